@@ -1,0 +1,1 @@
+"""Maths, conventions, layouts and images: everything that needs no GL."""
