@@ -1,0 +1,63 @@
+// The talk's shading formulas and what joins them to metallic-roughness materials.
+const float PI = 3.14159265358979;
+
+// [Mittring12 "New Specular Power Encoding"]: NewEncode, NewDecode.
+const float SPECULAR_POWER_CODE_RANGE = 19.0;
+const float SPECULAR_POWER_MIN = 0.5;       // code 0
+const float SPECULAR_POWER_MAX = 262144.0;  // code 1
+
+float specular_power_encode(float power) {
+    return (log2(power) + 1.0) / SPECULAR_POWER_CODE_RANGE;
+}
+
+float specular_power_decode(float code) {
+    return exp2(code * SPECULAR_POWER_CODE_RANGE - 1.0);
+}
+
+// alpha = roughness^2 and the Blinn-Phong power of the same width, 2 / alpha^2 - 2
+// [Karis13 "Real Shading in Unreal Engine 4"], held inside what the encoding can say.
+float specular_power_from_roughness(float roughness) {
+    float alpha_squared = max(roughness * roughness * roughness * roughness, 1e-12);
+    return clamp(2.0 / alpha_squared - 2.0, SPECULAR_POWER_MIN, SPECULAR_POWER_MAX);
+}
+
+float roughness_from_specular_power(float power) {
+    return sqrt(sqrt(2.0 / (power + 2.0)));
+}
+
+// [Mittring12 "Gaussian Specular"], after [McKesson12].
+const float GAUSSIAN_SPECULAR_THRESHOLD = 0.04;
+
+// 1 - CosAngle with CosAngle = pow(Threshold, 1 / BlinnPhongSpecularPower). The sharp powers have a
+// cosine that rounds to 1, hence the series for 1 - exp(-x).
+float one_minus_lobe_cosine(float power) {
+    float x = -log(GAUSSIAN_SPECULAR_THRESHOLD) / power;
+    return x < 0.05 ? x * (1.0 - x * (0.5 - x * (1.0 / 6.0))) : 1.0 - exp(-x);
+}
+
+// acos(CosAngle): where a Blinn-Phong lobe of this power has fallen to the threshold. Radians.
+float specular_lobe_angle(float power) {
+    return 2.0 * asin(sqrt(0.5 * one_minus_lobe_cosine(power)));
+}
+
+float light_area_angle(float source_radius, float light_distance) {
+    return atan(source_radius / light_distance);
+}
+
+// The slide's LightSpecular with its CosAngle widened by a soft sphere light, not yet divided by
+// the lobe's energy. 1 - cos is taken as 2 sin^2(x / 2): the slide's (Dot - 1) / (CosAngle - 1)
+// to the letter, but exact in float for the sharp powers, whose cosine rounds to 1.
+float gaussian_specular_lobe(vec3 n, vec3 h, float n_o_l, float lobe_angle) {
+    vec3 difference = n - h;
+    float one_minus_dot = min(0.5 * dot(difference, difference), 1.0);
+    float sine = sin(0.5 * lobe_angle);
+    float norm_angle = one_minus_dot / (2.0 * sine * sine);
+    return exp(-norm_angle * norm_angle) * n_o_l;
+}
+
+// Normalized specular reflection of one light, times the cosine: multiply with the specular colour
+// and the irradiance at normal incidence. [Mittring12 "Soft Sphere Area Light", "Energy conserving"]
+float gaussian_specular(vec3 n, vec3 h, float n_o_l, float power, float area_angle) {
+    float lobe_angle = specular_lobe_angle(power) + area_angle;
+    return gaussian_specular_lobe(n, h, n_o_l, lobe_angle) / (lobe_angle * lobe_angle * 10.0);
+}

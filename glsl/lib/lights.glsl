@@ -1,0 +1,43 @@
+// Punctual lights by the text of KHR_lights_punctual.
+#include "shared/light.glsl"
+
+struct LightSample {
+    vec3 to_light;     // unit
+    float distance_m;  // 1 for a directional light: its source_radius is an angle already
+    vec3 irradiance;   // on a surface that faces the light, without shadow
+};
+
+const float LIGHT_DISTANCE_MIN = 1e-3;  // m: keeps the inverse square finite
+
+// 1 near the light, 0 at the range and beyond: max(min(1 - (d / range)^4, 1), 0).
+// The 1 / d^2 of the extension's formula is applied by the caller.
+float range_window(float distance_m, float range) {
+    if (range <= 0.0) return 1.0;
+    float ratio = distance_m / range;
+    float squared = ratio * ratio;
+    return clamp(1.0 - squared * squared, 0.0, 1.0);
+}
+
+// 1 inside the inner cone, 0 outside the outer: the extension's recommended angular attenuation.
+float spot_falloff(Light light, vec3 to_light) {
+    float cosine = dot(light.direction_ws, -to_light);
+    float attenuation = clamp(cosine * light.spot_scale + light.spot_offset, 0.0, 1.0);
+    return attenuation * attenuation;
+}
+
+LightSample sample_light(Light light, vec3 p_ws) {
+    LightSample s;
+    if (light.kind == LIGHT_DIRECTIONAL) {
+        s.to_light = -light.direction_ws;
+        s.distance_m = 1.0;
+        s.irradiance = light.intensity;
+        return s;
+    }
+    vec3 offset = light.position_ws - p_ws;
+    s.distance_m = max(length(offset), LIGHT_DISTANCE_MIN);
+    s.to_light = offset / s.distance_m;
+    float falloff = range_window(s.distance_m, light.range) / (s.distance_m * s.distance_m);
+    if (light.kind == LIGHT_SPOT) falloff *= spot_falloff(light, s.to_light);
+    s.irradiance = light.intensity * falloff;
+    return s;
+}

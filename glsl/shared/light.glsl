@@ -1,0 +1,20 @@
+// Punctual lights, after the glTF extension KHR_lights_punctual.
+const uint LIGHT_DIRECTIONAL = 0u;
+const uint LIGHT_POINT = 1u;
+const uint LIGHT_SPOT = 2u;
+
+struct Light {
+    vec3 position_ws;
+    float range;          // m; 0 = unbounded
+    vec3 direction_ws;    // unit, the way the light travels
+    float source_radius;  // m; radians for a directional light
+    vec3 intensity;       // colour times lux (directional) or candela, in scene units
+    uint kind;
+    float spot_scale;     // 1 / (cos inner - cos outer)
+    float spot_offset;    // -cos outer * spot_scale
+    int shadow_view;      // first entry in ShadowViews, or -1: casts no shadow
+    float reserved;
+};
+
+// Never empty: a scene without lights holds one of intensity 0.
+layout(std430) readonly buffer Lights { Light lights[]; };

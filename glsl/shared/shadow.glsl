@@ -1,0 +1,21 @@
+// Shadow maps: each light owns consecutive views, starting at Light.shadow_view.
+//   directional: SHADOW_CASCADES cascades fitted to the camera, then one view of the whole scene
+//   spot:        one view
+//   point:       six views, +x -x +y -y +z -z
+const uint SHADOW_CASCADES = 4u;
+const uint SHADOW_POINT_FACES = 6u;
+
+const uint SHADOW_MAP_CASCADE = 0u;
+const uint SHADOW_MAP_SCENE = 1u;
+const uint SHADOW_MAP_LOCAL = 2u;
+
+struct ShadowView {
+    mat4 clip_from_world;
+    float texel;      // width of a texel in m, for a clip w of 1 (so: per m of depth in a perspective view)
+    float depth_bias; // in units of the stored depth: quantization
+    uint map;         // SHADOW_MAP_*
+    uint layer;
+};
+
+// Never empty.
+layout(std430) readonly buffer ShadowViews { ShadowView shadow_views[]; };
