@@ -61,3 +61,29 @@ float gaussian_specular(vec3 n, vec3 h, float n_o_l, float power, float area_ang
     float lobe_angle = specular_lobe_angle(power) + area_angle;
     return gaussian_specular_lobe(n, h, n_o_l, lobe_angle) / (lobe_angle * lobe_angle * 10.0);
 }
+
+// Half angle of the uniform cone that has the mean squared angle of the mirrored lobe. Radians.
+// A Blinn-Phong lobe about the half vector is exp(-p h^2 / 2): <h^2> = 2 / p, and the mirrored ray
+// turns by 2 h; a uniform cone of half angle a has a^2 / 2. [inferred; p + 2 = 2 / alpha^2 keeps
+// the broad lobes finite]
+float specular_cone_half_angle(float power) {
+    return min(4.0 * inversesqrt(power + 2.0), 0.5 * PI);
+}
+
+// Reflectance at the angle whose cosine is v_o_h [Schlick94].
+vec3 fresnel_schlick(vec3 specular_color, float v_o_h) {
+    float x = 1.0 - clamp(v_o_h, 0.0, 1.0);
+    float squared = x * x;
+    return specular_color + (1.0 - specular_color) * (squared * squared * x);
+}
+
+// Share of a uniform environment that a GGX surface mirrors into the direction of cosine n_o_v: the
+// analytic fit of [Karis14 "Physically Based Shading on Mobile"], after [Lazarov13].
+vec3 environment_brdf(vec3 specular_color, float roughness, float n_o_v) {
+    const vec4 c0 = vec4(-1.0, -0.0275, -0.572, 0.022);
+    const vec4 c1 = vec4(1.0, 0.0425, 1.04, -0.04);
+    vec4 r = roughness * c0 + c1;
+    float a004 = min(r.x * r.x, exp2(-9.28 * n_o_v)) * r.x + r.y;
+    vec2 scale_bias = vec2(-1.04, 1.04) * a004 + r.zw;
+    return specular_color * scale_bias.x + scale_bias.y;
+}

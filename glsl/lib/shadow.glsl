@@ -13,6 +13,9 @@ const float SHADOW_KERNEL_RADIUS = 2.1213;
 // Least share of that offset: a shading normal may lean away from the geometric one.
 const float SHADOW_OFFSET_FLOOR = 0.25;
 
+// Texels at a cascade's rim that the filter and the offset may need.
+const float SHADOW_CASCADE_MARGIN = 4.0;
+
 float shadow_compare(uint map, vec2 uv, uint layer, float depth) {
     vec4 coordinate = vec4(uv, float(layer), depth);
     if (map == SHADOW_MAP_CASCADE) return texture(u_shadow_cascades, coordinate);
@@ -81,9 +84,7 @@ float light_visibility(uint light, vec3 p_ws, vec3 n_ws, float offset_m) {
     if (l.shadow_view < 0) return 1.0;
     uint view = uint(l.shadow_view);
     vec3 to_light = -l.direction_ws;
-    if (l.kind == LIGHT_DIRECTIONAL) {
-        view += SHADOW_CASCADES;
-    } else {
+    if (l.kind != LIGHT_DIRECTIONAL) {
         vec3 offset = l.position_ws - p_ws;
         to_light = normalize(offset);
         if (l.kind == LIGHT_POINT) view += cube_face(-offset);
@@ -97,10 +98,9 @@ float light_visibility_in_view(uint light, vec3 p_ws, vec3 n_ws) {
         return light_visibility(light, p_ws, n_ws, 0.0);
     }
     uint view = uint(l.shadow_view);
-    const float margin_texels = 4.0;
-    for (uint i = 0u; i < SHADOW_CASCADES; ++i) {
-        if (inside_view(shadow_views[view], p_ws, margin_texels)) break;
-        ++view;
+    for (uint i = l.cascade_count; i > 0u; --i) {
+        uint cascade = uint(l.shadow_view) + i;
+        if (inside_view(shadow_views[cascade], p_ws, SHADOW_CASCADE_MARGIN)) view = cascade;
     }
     return view_visibility(shadow_views[view], p_ws, n_ws, -l.direction_ws, 0.0);
 }

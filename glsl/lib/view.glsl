@@ -6,9 +6,10 @@ vec3 position_ws_at(vec2 uv, float depth) {
     return p.xyz / p.w;
 }
 
-// Unit vector from the eye through a pixel.
+// Unit vector from the eye through a pixel. Holds for an infinite far plane, whose w is 0.
 vec3 eye_ray_ws(vec2 uv) {
-    return normalize(position_ws_at(uv, 1.0) - u_view.eye_ws);
+    vec4 p = u_view.world_from_clip * vec4(uv * 2.0 - 1.0, 1.0, 1.0);
+    return normalize(p.xyz - u_view.eye_ws * p.w);
 }
 
 // Distance from the eye's plane in m, from the depth buffer's value.

@@ -13,7 +13,7 @@ struct Light {
     float spot_scale;     // 1 / (cos inner - cos outer)
     float spot_offset;    // -cos outer * spot_scale
     int shadow_view;      // first entry in ShadowViews, or -1: casts no shadow
-    float reserved;
+    uint cascade_count;   // of a directional light
 };
 
 // Never empty: a scene without lights holds one of intensity 0.

@@ -1,8 +1,7 @@
 // Shadow maps: each light owns consecutive views, starting at Light.shadow_view.
-//   directional: SHADOW_CASCADES cascades fitted to the camera, then one view of the whole scene
+//   directional: one view of the whole scene, then Light.cascade_count cascades along the camera's view
 //   spot:        one view
 //   point:       six views, +x -x +y -y +z -z
-const uint SHADOW_CASCADES = 4u;
 const uint SHADOW_POINT_FACES = 6u;
 
 const uint SHADOW_MAP_CASCADE = 0u;

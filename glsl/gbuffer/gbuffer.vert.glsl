@@ -1,0 +1,31 @@
+// Surface attributes in world space.
+#include "shared/view.glsl"
+#include "shared/instance.glsl"
+
+in vec3 a_position;
+in vec3 a_normal;
+in vec4 a_tangent;
+in vec2 a_uv0;
+in vec2 a_uv1;
+in vec4 a_color;
+in uint a_instance;
+
+out vec3 v_normal_ws;
+out vec4 v_tangent_ws;
+out vec2 v_uv0;
+out vec2 v_uv1;
+out vec4 v_color;
+flat out uint v_material;
+
+invariant gl_Position;
+
+void main() {
+    mat4 world_from_local = instances[a_instance].world_from_local;
+    v_normal_ws = mat3(instances[a_instance].normal_from_local) * a_normal;
+    v_tangent_ws = vec4(mat3(world_from_local) * a_tangent.xyz, a_tangent.w);
+    v_uv0 = a_uv0;
+    v_uv1 = a_uv1;
+    v_color = a_color;
+    v_material = instances[a_instance].material;
+    gl_Position = u_view.clip_from_world * (world_from_local * vec4(a_position, 1.0));
+}

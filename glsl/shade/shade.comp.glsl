@@ -1,0 +1,61 @@
+// Deferred shading: adds direct and indirect light to the emission in scene_color, and the sky where
+// nothing is. [Mittring12 "Shading"]
+layout(local_size_x = 8, local_size_y = 8) in;
+
+#include "lib/direct.glsl"
+#include "lib/gbuffer.glsl"
+#include "lib/view.glsl"
+#if SKY
+#include "lib/sky.glsl"
+#endif
+
+uniform sampler2D u_depth;
+uniform sampler2D u_gbuffer_a;
+uniform sampler2D u_gbuffer_b;
+uniform sampler2D u_gbuffer_c;
+uniform sampler2D u_gbuffer_d;
+#if DIFFUSE_GI
+uniform sampler2D u_diffuse_gi;   // irradiance / pi
+#endif
+#if SPECULAR_GI
+uniform sampler2D u_specular_gi;  // radiance along the mirrored eye ray
+#endif
+layout(rgba16f) uniform image2D u_scene_color;
+
+vec3 shade_surface(GBufferSurface s, vec3 p_ws, ivec2 pixel) {
+    vec3 to_eye = normalize(u_view.eye_ws - p_ws);
+    ShadingPoint point = ShadingPoint(p_ws, s.normal_ws, to_eye, s.albedo, s.specular_color,
+                                      s.specular_power);
+    DirectLight direct = direct_light(point);
+    vec3 radiance = direct.diffuse + direct.specular;
+#if DIFFUSE_GI
+    radiance += texelFetch(u_diffuse_gi, pixel, 0).rgb * s.albedo * s.ambient_occlusion;
+#endif
+#if SPECULAR_GI
+    float roughness = roughness_from_specular_power(s.specular_power);
+    float n_o_v = clamp(dot(s.normal_ws, to_eye), 0.0, 1.0);
+    radiance += texelFetch(u_specular_gi, pixel, 0).rgb * s.ambient_occlusion
+        * environment_brdf(s.specular_color, roughness, n_o_v);
+#endif
+    return radiance;
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, ivec2(u_view.viewport_px.xy)))) return;
+    vec2 uv = (vec2(pixel) + 0.5) * u_view.viewport_px.zw;
+    float depth = texelFetch(u_depth, pixel, 0).r;
+    if (depth == DEPTH_CLEAR) {
+#if SKY
+        imageStore(u_scene_color, pixel, vec4(sky_radiance(eye_ray_ws(uv), 0.0), 0.0));
+#endif
+        return;
+    }
+    GBufferSurface s = gbuffer_unpack(GBufferTexels(
+        texelFetch(u_gbuffer_a, pixel, 0), texelFetch(u_gbuffer_b, pixel, 0),
+        texelFetch(u_gbuffer_c, pixel, 0), texelFetch(u_gbuffer_d, pixel, 0)));
+    if (s.lighting_model == LIGHTING_UNLIT) return;
+    vec4 emission = imageLoad(u_scene_color, pixel);
+    vec3 radiance = emission.rgb + shade_surface(s, position_ws_at(uv, depth), pixel);
+    imageStore(u_scene_color, pixel, vec4(min(radiance, vec3(65504.0)), 1.0));
+}

@@ -1,0 +1,77 @@
+// The sparse voxel octree's layout: constants, the uniform block, and the GPU's own counters.
+//
+// Level l has 2^l nodes a side; its lattice has 2^(l+1) points a side, spaced size / 2^(l+1).
+// Node n owns the 2x2x2 points 2n + {0,1}^3 and filters over 2n + {0,1,2}^3.
+// [Mittring12 "Sparse Voxel Octree"]
+
+const int OCTREE_MAX_LEVELS = 10;      // levels 0..9: at most 1024 lattice points a side
+const uint NODE_BRICK_MASK = 0x00ffffffu; // low 24 bits of Node.brick: brick index + 1, 0 = empty
+const uint NODE_SCALE_SHIFT = 24u;     // high 8 bits: the brick's HDR multiplier is 2^(code - 128)
+const int NODE_SCALE_BIAS = 128;
+const uint BRICK_VOXELS = 8u;          // 2x2x2
+const uint BRICK_SIDE = 3u;            // 3x3x3 with the redundant border
+const uint BRICK_DIRECTIONS = 6u;      // +x -x +y -y +z -z: the side of the voxel that one looks at
+const uint FRAGMENT_GROUP = 128u;      // threads a group over the fragment queue
+const uint BRICK_GROUP = 64u;          // threads a group over bricks and their voxels
+const uint SCAN_GROUP = 256u;          // threads a group in the prefix sums
+const uint SCAN_BLOCKS = 2048u;        // 64-node blocks that one such group sums
+const uint REGION_SIDE = 8u;           // the cube is split into 8^3 regions, each with its leaf level
+
+// A node is two words. child: index of the tile of eight children + 1, 0 = none.
+// brick: see NODE_BRICK_MASK; where it is 0, `child` holds the level of the largest empty ancestor.
+struct Node {
+  uint child;
+  uint brick;
+};
+
+// One rasterized sample of a surface. position: 10:10:10 lattice coordinates at the finest level;
+// albedo: RGBA8, a = opacity; normal: snorm8 xyz; emissive: RGB9E5 radiance.
+struct VoxelFragment {
+  uint position;
+  uint albedo;
+  uint normal;
+  uint emissive;
+};
+
+// Averages over a voxel's fragments, 16 bytes: GI-03's "material attributes, normal".
+// The normal keeps its length: short means that the fragments disagree.
+struct VoxelAttributes {
+  uint albedo;
+  uint normal;
+  uint emissive;
+  uint fragments;
+};
+
+struct DispatchArgs {
+  uint x;
+  uint y;
+  uint z;
+  uint threads;
+};
+
+// What the GPU alone counts and decides; the CPU reads a copy frames later for the HUD and reports.
+struct OctreeState {
+  uint fragment_count;               // asked for; beyond the capacity they are dropped
+  uint fragment_dropped;
+  uint tile_count;
+  uint tile_dropped;
+  uint brick_count;
+  uint brick_dropped;
+  uint leaf_first;                   // first brick of the finest level
+  uint reserved;
+  DispatchArgs fragments;
+  DispatchArgs bricks;               // a thread a brick
+  DispatchArgs leaf_voxels;          // a thread a voxel, over bricks of every level that may hold leaves
+  DispatchArgs level_bricks[10];     // a thread a brick of this level
+  DispatchArgs level_voxels[10];     // a thread a voxel of this level
+  uint level_first[12];              // first brick of each level; [levels] = brick_count
+};
+
+layout(std140) uniform Octree {
+  vec4 origin_size;      // xyz: world position of lattice point 0; w: side of the cube in metres
+  ivec4 levels;          // x: finest leaf level; y: top level (levels up to it are dense); z: lattice points a side; w: first leaf level of any region
+  uvec4 capacity;        // fragments, tiles, bricks, interior bricks
+  uvec4 atlas;           // bricks a row, rows, layers of the atlas; w: number of 64-node blocks
+  vec4 atlas_texel;      // xyz: 1 / atlas size in texels; w: metres between points of the finest lattice
+  vec4 emissive_scale;   // x: fixed-point units a unit of radiance in the accumulators; y: its inverse
+} octree;
