@@ -1,0 +1,7 @@
+"""``python -m elemental``: the command line without the installed script."""
+
+import sys
+
+from .cli import main
+
+sys.exit(main())

@@ -1,0 +1,82 @@
+"""The command line: words to calls, nothing else.
+
+Exit codes: 0 done; 2 bad input, told in one line on stderr; 130 interrupted. What needs GL,
+images or a window is imported by the command that uses it: help and refusals come at once.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from dataclasses import fields
+from typing import TypeVar
+
+from .core.errors import InputError
+from .flags import parse
+
+T = TypeVar("T")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command; returns the exit code."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    commands = {"shot": _shot, "run": _run, "bench": _bench, "list": _list}
+    try:
+        options = parse(words, commands)
+        options.command(options)
+        sys.stdout.flush()
+    except InputError as error:
+        return _refuse(str(error))
+    except MemoryError:
+        return _refuse("out of memory")
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except KeyboardInterrupt:
+        return 130
+    return 0
+
+
+def _refuse(message: str) -> int:
+    line = "".join(c if c.isprintable() else "?" for c in " ".join(message.split()))
+    print(f"elemental: error: {line}", file=sys.stderr)
+    return 2
+
+
+def _filled(kind: type[T], options: argparse.Namespace) -> T:
+    """The dataclass ``kind`` from the options that bear its fields' names."""
+    values = {field.name: getattr(options, field.name) for field in fields(kind)}  # type: ignore[arg-type]
+    return kind(**values)
+
+
+def _shot(options: argparse.Namespace) -> None:
+    from .shot import Shot, shoot  # noqa: PLC0415
+
+    shoot(_filled(Shot, options))
+
+
+def _run(options: argparse.Namespace) -> None:
+    from .ui.app import Run, run  # noqa: PLC0415
+
+    run(_filled(Run, options))
+
+
+def _bench(options: argparse.Namespace) -> None:
+    from .bench import Bench, bench  # noqa: PLC0415
+
+    bench(_filled(Bench, options))
+
+
+def _list(options: argparse.Namespace) -> None:
+    from .listing import lines  # noqa: PLC0415
+
+    if options.what == "cameras" and options.scene is None:
+        raise InputError("list cameras", "SCENE", "name a scene")
+    if options.what != "cameras" and options.scene is not None:
+        raise InputError(f"list {options.what}", options.scene, "takes no scene")
+    for line in lines(options.what, options.scene):
+        print(line)

@@ -1,0 +1,186 @@
+"""The flags of the command line: each with its unit, range and default, checked as it is read."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NoReturn
+
+from . import __version__
+from .core.errors import InputError
+
+MAX_SIDE_PX = 16384
+"""Largest image side; the texture limit of common drivers."""
+
+MAX_COORDINATE_M = 1e9
+"""Farthest camera; beyond it 32-bit positions hold no scene."""
+
+VECTOR_FLAGS = frozenset({"--eye", "--target"})
+LISTS = ("views", "settings", "scenes", "cameras", "bindings")
+
+Command = Callable[[argparse.Namespace], None]
+
+
+class _Parser(argparse.ArgumentParser):
+    """Refuses by InputError instead of a usage page, and takes no abbreviated flags."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options, allow_abbrev=False)
+
+    def error(self, message: str) -> NoReturn:
+        raise InputError("", "", message.removeprefix("argument "))
+
+    def flag(self, name: str, metavar: str, kind: Any, default: Any, text: str) -> None:
+        """A flag with a value; ``kind`` makes the value of a text or raises ArgumentTypeError."""
+        self.add_argument(name, metavar=metavar, type=kind, default=default, help=text)
+
+
+def parse(words: list[str], commands: dict[str, Command]) -> argparse.Namespace:
+    """The options of one command line, ``command`` among them. Raises InputError."""
+    return build_parser(commands).parse_args(_join_vectors(words))
+
+
+def build_parser(commands: dict[str, Command]) -> argparse.ArgumentParser:
+    """The parser of all commands; ``commands`` maps each command's name to what it calls."""
+    parser = _Parser(
+        prog="elemental", description="A renderer lit by voxel cone tracing in a sparse octree."
+    )
+    parser.add_argument("--version", action="version", version=f"elemental {__version__}")
+    subparsers = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    for name, (text, add_flags) in _COMMANDS.items():
+        command = subparsers.add_parser(name, help=text, description=text)
+        command.set_defaults(command=commands[name])
+        add_flags(command)
+    return parser
+
+
+def _add_common_flags(parser: _Parser) -> None:
+    parser.add_argument(
+        "scene",
+        nargs="?",
+        metavar="SCENE",
+        help=".gltf, .glb, .toml or a name of `elemental list scenes` (default: the demo)",
+    )
+    flag = parser.flag
+    flag("--size", "WxH", _size, (1280, 720), "width and height in pixels (default: 1280x720)")
+    parser.add_argument(
+        "--set",
+        dest="assignments",
+        action="append",
+        default=[],
+        metavar="KEY=VALUE",
+        help="assign a setting of `elemental list settings`, repeatable (default: the scene's)",
+    )
+
+
+def _add_shot_flags(parser: _Parser) -> None:
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        required=True,
+        metavar="OUT.png|OUT.exr",
+        help="picture to write, one a frame if its name holds %%04d (required, no default)",
+    )
+    _add_common_flags(parser)
+    flag = parser.flag
+    flag("--frames", "N", _whole(1, 10**6), 1, "frames to render; the last is kept (default: 1)")
+    flag("--fps", "F", _number(1e-3, 1e4), 30.0, "frames a second of scene time (default: 30)")
+    flag("--time", "S", _number(0, 1e6), 0.0, "scene time of frame 0 in seconds (default: 0)")
+    flag("--seed", "K", _whole(0, 2**31 - 1), 0, "seed of all random choices (default: 0)")
+    flag("--camera", "NAME", str, None, "a camera of the scene (default: its first)")
+    flag("--eye", "X,Y,Z", _vector, None, "camera position in metres (default: the camera's)")
+    flag("--target", "X,Y,Z", _vector, None, "point looked at in metres (default: the camera's)")
+    flag("--fov", "DEG", _number(1, 179), None, "vertical angle, degrees (default: the camera's)")
+    flag("--view", "NAME", str, "final", "a buffer of `elemental list views` (default: final)")
+    flag("--report", "R.json", Path, None, "also write times in ms and bytes (default: none)")
+
+
+def _add_run_flags(parser: _Parser) -> None:
+    _add_common_flags(parser)
+    parser.add_argument(
+        "--fullscreen", action="store_true", help="cover the primary monitor (default: off)"
+    )
+    parser.flag("--frames", "N", _whole(1, 10**9), None, "exit after N frames (default: never)")
+
+
+def _add_bench_flags(parser: _Parser) -> None:
+    _add_common_flags(parser)
+    flag = parser.flag
+    flag("--frames", "N", _whole(1, 10**6), 30, "frames to measure (default: 30)")
+    flag("--warmup", "N", _whole(0, 10**6), 5, "frames to render before (default: 5)")
+    parser.add_argument(
+        "--rebuild",
+        choices=("none", "light", "geometry"),
+        default="none",
+        help="voxel work forced in each frame: none, relight, revoxelize (default: none)",
+    )
+    flag("--json", "B.json", Path, None, "also write the figures, in ms (default: none)")
+
+
+def _add_list_words(parser: _Parser) -> None:
+    parser.add_argument("what", choices=LISTS, help="what to list")
+    parser.add_argument("scene", nargs="?", metavar="SCENE", help="whose cameras (no default)")
+
+
+_COMMANDS: dict[str, tuple[str, Callable[[_Parser], None]]] = {
+    "shot": ("render a picture or a numbered sequence, headless", _add_shot_flags),
+    "run": ("open a window with a fly camera and pass times", _add_run_flags),
+    "bench": ("time each pass of the frame, headless", _add_bench_flags),
+    "list": ("list what can be named on the command line", _add_list_words),
+}
+
+
+def _join_vectors(words: list[str]) -> list[str]:
+    """``--eye -1,2,3`` as ``--eye=-1,2,3``: argparse takes the former's value for a flag."""
+    joined: list[str] = []
+    for word in words:
+        if joined and joined[-1] in VECTOR_FLAGS and re.match(r"-[\d.]", word):
+            joined[-1] += f"={word}"
+        else:
+            joined.append(word)
+    return joined
+
+
+def _size(text: str) -> tuple[int, int]:
+    match = re.fullmatch(r"(\d{1,5})[xX](\d{1,5})", text, re.ASCII)
+    size = (int(match[1]), int(match[2])) if match else (0, 0)
+    if not all(1 <= side <= MAX_SIDE_PX for side in size):
+        raise argparse.ArgumentTypeError(f"{text!r} is not WIDTHxHEIGHT, 1 to {MAX_SIDE_PX} pixels")
+    return size
+
+
+def _vector(text: str) -> tuple[float, float, float]:
+    try:
+        x, y, z = (float(part) for part in text.split(","))
+    except ValueError:
+        x = y = z = math.nan
+    if not all(abs(component) <= MAX_COORDINATE_M for component in (x, y, z)):
+        raise argparse.ArgumentTypeError(f"{text!r} is not X,Y,Z in metres")
+    return x, y, z
+
+
+def _whole(lo: int, hi: int) -> Callable[[str], int]:
+    def parse_whole(text: str) -> int:
+        value = int(text) if re.fullmatch(r"-?\d{1,12}", text, re.ASCII) else None
+        if value is None or not lo <= value <= hi:
+            raise argparse.ArgumentTypeError(f"{text!r} is not a whole number, {lo} to {hi}")
+        return value
+
+    return parse_whole
+
+
+def _number(lo: float, hi: float) -> Callable[[str], float]:
+    def parse_number(text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not lo <= value <= hi:
+            raise argparse.ArgumentTypeError(f"{text!r} is not a number, {lo:g} to {hi:g}")
+        return value
+
+    return parse_number
