@@ -1,0 +1,140 @@
+"""Image files to arrays and back. Row 0 is the top row; every write is atomic."""
+
+from __future__ import annotations
+
+import io
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import PIL.Image
+
+from elemental.core.errors import InputError
+from elemental.core.rgbe import decode_rgbe
+
+PNG_JPEG_WEBP = ("PNG", "JPEG", "WEBP")
+
+
+def read_png_jpeg_webp(source: bytes | Path, name: str | None = None) -> npt.NDArray[np.uint8]:
+    """Decode a PNG, JPEG or WebP image to (H, W, 4) uint8, values as stored (no colour management).
+
+    Grey is repeated over RGB, a missing alpha is 255, 16 bits a channel are rounded to 8.
+    `name` is what errors call the image. Raises InputError for a file that can't be decoded.
+    """
+    label = name or (str(source) if isinstance(source, Path) else "image")
+    encoded = _read_bytes(source, label) if isinstance(source, Path) else source
+    try:
+        with PIL.Image.open(io.BytesIO(encoded), formats=PNG_JPEG_WEBP) as image:
+            return _rgba8(image)
+    except Exception as error:  # Pillow's decoders raise what their input makes them raise
+        raise InputError(label, "", f"not a readable PNG, JPEG or WebP image ({error})") from error
+
+
+def read_environment(path: Path) -> npt.NDArray[np.float32]:
+    """Read a radiance map, `.hdr` (RGBE) or `.exr`, as (H, W, 3) float32 linear radiance.
+
+    Raises InputError for another kind of file, a broken one, or one with NaN or infinite texels.
+    """
+    suffix = path.suffix.lower()
+    if suffix == ".hdr":
+        try:
+            radiance = decode_rgbe(_read_bytes(path, str(path)))
+        except ValueError as error:
+            raise InputError(path, "", str(error)) from error
+    elif suffix == ".exr":
+        radiance = read_exr(path)
+    else:
+        raise InputError(path, "", f"expected an .hdr or .exr file, not {suffix or 'no suffix'!r}")
+    if not np.isfinite(radiance).all():
+        raise InputError(path, "", "texels that are NaN or infinite")
+    return np.maximum(radiance, 0.0)
+
+
+def read_exr(path: Path) -> npt.NDArray[np.float32]:
+    """Read the first part of an OpenEXR file as (H, W, 3) float32; a lone Y is repeated.
+
+    Raises InputError for a file that OpenEXR can't read or that has neither R, G, B nor Y.
+    """
+    import OpenEXR  # noqa: PLC0415 (100 ms to import; most runs read no EXR)
+
+    encoded = _read_bytes(path, str(path))
+    try:
+        channels = OpenEXR.File(io.BytesIO(encoded), separate_channels=True).channels()
+        planes = {name: np.asarray(channel.pixels) for name, channel in channels.items()}
+    except Exception as error:  # the binding raises what OpenEXR's C++ throws
+        raise InputError(path, "", f"not a readable OpenEXR file ({error})") from error
+    names = ("R", "G", "B") if {"R", "G", "B"} <= planes.keys() else ("Y", "Y", "Y")
+    if names[0] not in planes:
+        found = ", ".join(sorted(planes)) or "none"
+        raise InputError(path, "", f"expected channels R, G, B or Y, found {found}")
+    if len({planes[name].shape for name in names}) != 1:
+        raise InputError(path, "", "channels of different size")
+    return np.stack([planes[name].astype(np.float32) for name in names], axis=-1)
+
+
+def write_png(path: Path, rgb8: npt.NDArray[np.uint8]) -> None:
+    """Write (H, W, 3) or (H, W, 4) uint8 as PNG. The same pixels give the same bytes."""
+    with atomic_file(path) as temporary:
+        PIL.Image.fromarray(np.ascontiguousarray(rgb8)).save(temporary, format="PNG")
+
+
+def write_exr(path: Path, rgb32f: npt.NDArray[np.float32]) -> None:
+    """Write (H, W, 3) or (H, W, 4) float32 as OpenEXR, exactly. The same pixels, the same bytes."""
+    import OpenEXR  # noqa: PLC0415 (100 ms to import; most runs write no EXR)
+
+    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    pixels = np.ascontiguousarray(rgb32f, dtype=np.float32)
+    channels = {"RGBA"[: pixels.shape[2]]: pixels}
+    with atomic_file(path) as temporary:
+        OpenEXR.File(header, channels).write(str(temporary))
+
+
+@contextmanager
+def atomic_file(path: Path) -> Iterator[Path]:
+    """A temporary path in `path`'s folder that replaces `path` when the block ends well.
+
+    Raises InputError where the folder is missing or can't be written.
+    """
+    try:
+        handle, name = tempfile.mkstemp(path.suffix, f".{path.stem}-", path.parent)
+    except OSError as error:
+        raise InputError(path, "", f"can't be written ({error.strerror})") from error
+    os.close(handle)
+    temporary = Path(name)
+    try:
+        yield temporary
+        temporary.chmod(0o666 & ~_umask())
+        try:
+            os.replace(temporary, path)
+        except OSError as error:
+            raise InputError(path, "", f"can't be written ({error.strerror})") from error
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def _read_bytes(path: Path, label: str) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise InputError(label, "", f"can't be read ({error.strerror})") from error
+
+
+def _rgba8(image: PIL.Image.Image) -> npt.NDArray[np.uint8]:
+    if image.mode.startswith("I") or image.mode == "F":
+        # 16-bit grey: Pillow's own conversion to 8 bits clips instead of scaling.
+        grey = np.asarray(image, dtype=np.float64) / 65535.0
+        level = (np.clip(grey, 0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)
+        return np.stack([level, level, level, np.full_like(level, 255)], axis=-1)
+    rgba: npt.NDArray[Any] = np.asarray(image.convert("RGBA"), dtype=np.uint8)
+    return rgba

@@ -1,0 +1,1 @@
+"""Meshes, materials, lights, cameras and their importers: plain numpy, no GL."""
