@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 from pyrr import matrix44
 
-Mat4: TypeAlias = npt.NDArray[np.float32]
+Matrix: TypeAlias = npt.NDArray[np.float32]
 """(4, 4) float32."""
 Vec3Like: TypeAlias = Sequence[float] | npt.NDArray[Any]
 
@@ -27,12 +27,12 @@ PARALLEL_SINE = 1e-4
 far above float32 rounding, far below what an artist places on purpose]."""
 
 
-def identity() -> Mat4:
+def identity() -> Matrix:
     """The (4, 4) float32 identity."""
     return np.eye(4, dtype=np.float32)
 
 
-def look_at(eye: Vec3Like, target: Vec3Like, up: Vec3Like = (0.0, 1.0, 0.0)) -> Mat4:
+def look_at(eye: Vec3Like, target: Vec3Like, up: Vec3Like = (0.0, 1.0, 0.0)) -> Matrix:
     """view_from_world of a camera at `eye` (m) that looks at `target`.
 
     Where the view direction is parallel to `up`, the axis most perpendicular to it stands in.
@@ -49,7 +49,7 @@ def look_at(eye: Vec3Like, target: Vec3Like, up: Vec3Like = (0.0, 1.0, 0.0)) -> 
     return _from_pyrr(matrix44.create_look_at(e, t, u))
 
 
-def perspective(fov_y: float, aspect: float, near: float, far: float = math.inf) -> Mat4:
+def perspective(fov_y: float, aspect: float, near: float, far: float = math.inf) -> Matrix:
     """clip_from_view of a perspective camera.
 
     `fov_y` in radians over the whole height, `aspect` is width / height, `near` and `far` in m.
@@ -65,13 +65,13 @@ def perspective(fov_y: float, aspect: float, near: float, far: float = math.inf)
 
 def orthographic(  # noqa: PLR0917 (OpenGL's own order of the six)
     left: float, right: float, bottom: float, top: float, near: float, far: float
-) -> Mat4:
+) -> Matrix:
     """clip_from_view of the view-space box left..right, bottom..top, near..far along -z."""
     bounds = (float(v) for v in (left, right, bottom, top, near, far))
     return _from_pyrr(matrix44.create_orthogonal_projection(*bounds))
 
 
-def rotation(quaternion_xyzw: Vec3Like) -> Mat4:
+def rotation(quaternion_xyzw: Vec3Like) -> Matrix:
     """The rotation by a quaternion in glTF's order x, y, z, w; it is normalized first.
 
     Raises ValueError for a quaternion of length 0.
@@ -83,7 +83,7 @@ def rotation(quaternion_xyzw: Vec3Like) -> Mat4:
     return _from_pyrr(matrix44.create_from_quaternion(q / length))
 
 
-def compose(translation: Vec3Like, quaternion_xyzw: Vec3Like, scale: Vec3Like) -> Mat4:
+def compose(translation: Vec3Like, quaternion_xyzw: Vec3Like, scale: Vec3Like) -> Matrix:
     """translation @ rotation @ scale, glTF's order: the scale acts first."""
     m = rotation(quaternion_xyzw)
     m[:3, :3] *= np.asarray(scale, np.float32)
@@ -91,12 +91,12 @@ def compose(translation: Vec3Like, quaternion_xyzw: Vec3Like, scale: Vec3Like) -
     return m
 
 
-def inverse(m: Mat4) -> Mat4:
+def inverse(m: Matrix) -> Matrix:
     """The inverse, computed in float64. Raises numpy.linalg.LinAlgError for a singular matrix."""
     return np.linalg.inv(m.astype(np.float64)).astype(np.float32)
 
 
-def transform_points(m: Mat4, points: npt.NDArray[Any]) -> npt.NDArray[np.float32]:
+def transform_points(m: Matrix, points: npt.NDArray[Any]) -> npt.NDArray[np.float32]:
     """`m` applied to (N, 3) points, divided by w where `m` projects. (N, 3) float32."""
     p = np.asarray(points, np.float64) @ m[:3, :3].astype(np.float64).T + m[:3, 3]
     if np.array_equal(m[3], (0.0, 0.0, 0.0, 1.0)):
@@ -106,16 +106,16 @@ def transform_points(m: Mat4, points: npt.NDArray[Any]) -> npt.NDArray[np.float3
     return projected
 
 
-def transform_vectors(m: Mat4, vectors: npt.NDArray[Any]) -> npt.NDArray[np.float32]:
+def transform_vectors(m: Matrix, vectors: npt.NDArray[Any]) -> npt.NDArray[np.float32]:
     """The linear part of `m` applied to (N, 3) directions; lengths are kept as they come out."""
     v = np.asarray(vectors, np.float64) @ m[:3, :3].astype(np.float64).T
     return v.astype(np.float32)
 
 
-def normal_matrix(m: Mat4) -> npt.NDArray[np.float32]:
+def normal_matrix(m: Matrix) -> npt.NDArray[np.float32]:
     """(3, 3) inverse transpose of `m`'s linear part: takes normals where `m` takes points."""
     return np.linalg.inv(m[:3, :3].astype(np.float64)).T.astype(np.float32)
 
 
-def _from_pyrr(m: npt.NDArray[Any]) -> Mat4:
+def _from_pyrr(m: npt.NDArray[Any]) -> Matrix:
     return np.ascontiguousarray(m.T, dtype=np.float32)
