@@ -1,5 +1,15 @@
 // Deferred shading: adds direct and indirect light to the emission in scene_color, and the sky where
 // nothing is. [Mittring12 "Shading"]
+#ifndef SKY
+#define SKY 1
+#endif
+#ifndef DIFFUSE_GI
+#define DIFFUSE_GI 1
+#endif
+#ifndef SPECULAR_GI
+#define SPECULAR_GI 1
+#endif
+
 layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "lib/direct.glsl"

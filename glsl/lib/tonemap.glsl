@@ -1,0 +1,35 @@
+// From scene-referred radiance to display codes.
+
+// Filmic curve: the fit of [Narkowicz15 "ACES Filmic Tone Mapping Curve"].
+vec3 filmic_curve(vec3 x) {
+    return clamp((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
+}
+
+// IEC 61966-2-1, per channel.
+vec3 srgb_encode(vec3 linear) {
+    vec3 c = clamp(linear, 0.0, 1.0);
+    return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308)));
+}
+
+// Rec. 709 luminance of linear colour.
+float luminance(vec3 linear) {
+    return dot(linear, vec3(0.2126, 0.7152, 0.0722));
+}
+
+uint hash_pcg(uint x) {  // [Jarzynski20 "Hash Functions for GPU Rendering"]
+    uint state = x * 747796405u + 2891336453u;
+    uint word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+    return (word >> 22u) ^ word;
+}
+
+// Triangular noise in -1..1, the same for a pixel every time: added before rounding to 8 bits it
+// makes the error independent of the signal [Roberts62], so gradients do not band.
+vec3 dither_triangular(uvec2 pixel) {
+    vec3 noise;
+    uint state = hash_pcg(pixel.x + hash_pcg(pixel.y));
+    for (int i = 0; i < 3; ++i) {
+        state = hash_pcg(state);
+        noise[i] = (float(state & 0xffffu) + float(state >> 16u)) / 65535.0 - 1.0;
+    }
+    return noise;
+}
