@@ -1,0 +1,60 @@
+"""``elemental list``: what can be named on the command line, a line each, columns aligned."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from .core.paths import content_root
+from .settings import SETTINGS
+
+
+def lines(what: str, scene: str | None = None) -> list[str]:
+    """The lines of ``views``, ``settings``, ``scenes``, ``cameras`` (of ``scene``) or ``bindings``.
+
+    Raises InputError for a scene that can't be opened.
+    """
+    if what == "cameras":
+        return _cameras(scene or "")
+    tables = {"views": _views, "settings": _settings, "scenes": _scenes, "bindings": _bindings}
+    return tables[what]()
+
+
+def _columns(rows: Sequence[Sequence[str]]) -> list[str]:
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))] if rows else []
+    return [
+        "  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in rows
+    ]
+
+
+def _settings() -> list[str]:
+    return _columns(
+        [
+            (s.key, s.value_text(s.default) or '""', s.range_text(), s.help)
+            for s in SETTINGS.values()
+        ]
+    )
+
+
+def _scenes() -> list[str]:
+    folder = content_root() / "scenes"
+    files = sorted(folder.glob("*.toml"))
+    return [file.stem for file in files]
+
+
+def _views() -> list[str]:
+    from .frame import VIEWS  # noqa: PLC0415 (pulls in the whole renderer)
+
+    return _columns(list(VIEWS.items()))
+
+
+def _bindings() -> list[str]:
+    from .ui.bindings import BINDINGS  # noqa: PLC0415 (only this list needs it)
+
+    return _columns([(b.keys_text(), b.help) for b in BINDINGS])
+
+
+def _cameras(scene: str) -> list[str]:
+    from .session import open_scene  # noqa: PLC0415 (only this list opens a scene)
+
+    opened, _ = open_scene(scene, ())
+    return [camera.name for camera in opened.cameras]

@@ -1,0 +1,129 @@
+"""What every door does before the first frame: open the scene, settle settings and camera.
+
+All of it raises InputError before anything is rendered or written.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+import os
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from .core import transforms
+from .core.errors import InputError
+from .core.images import read_environment
+from .scene.load import load_scene
+from .scene.model import Camera, Environment, Scene
+from .settings import Settings
+
+DEFAULT_SCENE = "atrium"
+
+Point = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Stage:
+    """An opened scene with the settings and the camera that a door asked for."""
+
+    scene: Scene
+    settings: Settings
+    camera: Camera
+
+
+def open_scene(name: str | None, assignments: Iterable[str]) -> tuple[Scene, Settings]:
+    """The scene and its settings: defaults, under the scene file's, under ``key=value`` texts."""
+    texts = tuple(assignments)
+    asked = Settings.parse(texts)["scene.default_lights"]
+    source = DEFAULT_SCENE if name is None else name
+    scene = load_scene(source, default_lights=asked)
+    settings = Settings.parse(texts, _own_settings(scene))
+    if settings["scene.default_lights"] != asked:
+        scene = load_scene(source, default_lights=settings["scene.default_lights"])
+    if settings["sky.image"]:
+        radiance = read_environment(Path(settings["sky.image"]))
+        scene.environment = Environment(radiance, np.ones(3, np.float32), 1.0)
+    return scene, settings
+
+
+def _own_settings(scene: Scene) -> Settings:
+    exposure = {} if scene.exposure_ev is None else {"exposure": scene.exposure_ev}
+    return Settings().replace({**exposure, **scene.settings}, str(scene.path))
+
+
+@dataclass(frozen=True)
+class Viewpoint:
+    """Where the command line looks from; None leaves each to the scene's camera."""
+
+    camera: str | None = None
+    eye: Point | None = None
+    target: Point | None = None
+    fov_deg: float | None = None
+
+
+def set_stage(
+    name: str | None, assignments: Iterable[str], viewpoint: Viewpoint, size: tuple[int, int]
+) -> Stage:
+    """``open_scene`` and ``choose_camera`` for a picture of ``size`` pixels."""
+    scene, settings = open_scene(name, assignments)
+    return Stage(scene, settings, choose_camera(scene, viewpoint, size[0] / size[1]))
+
+
+def choose_camera(scene: Scene, viewpoint: Viewpoint, aspect: float) -> Camera:
+    """The camera that a viewpoint names. Raises InputError for one that can't be."""
+    camera = scene.default_camera(aspect)
+    if viewpoint.camera is not None:
+        named = {camera.name: camera for camera in reversed(scene.cameras)}
+        camera = named[known_name("--camera", viewpoint.camera, list(named), str(scene.path))]
+    if viewpoint.eye is not None or viewpoint.target is not None:
+        camera = replace(camera, name="--eye", world_from_view=_look(viewpoint), aspect=None)
+    if viewpoint.fov_deg is not None:
+        camera = replace(camera, fov_y=math.radians(viewpoint.fov_deg))
+    return camera
+
+
+def _look(viewpoint: Viewpoint) -> transforms.Matrix:
+    if viewpoint.camera is not None:
+        raise InputError("--eye", "", "not together with --camera")
+    if viewpoint.eye is None or viewpoint.target is None:
+        raise InputError("--eye", "", "needs --target, and --target needs --eye")
+    try:
+        return transforms.inverse(transforms.look_at(viewpoint.eye, viewpoint.target))
+    except ValueError:
+        raise InputError("--target", "", "is the same point as --eye") from None
+
+
+def known_name(flag: str, name: str, names: Sequence[str], file: str = "") -> str:
+    """``name`` if it is among ``names``; else InputError with the nearest one."""
+    if name in names:
+        return name
+    nearest = difflib.get_close_matches(name, names, n=1, cutoff=0.4)
+    known = ", ".join(names[:8]) + (", …" if len(names) > 8 else "")
+    reason = f"no such name as {name!r}; "
+    reason += f"did you mean {nearest[0]!r}?" if nearest else f"known: {known or 'none'}"
+    raise InputError(file, flag, reason) if file else InputError(flag, "", reason)
+
+
+def check_output(flag: str, path: Path, suffixes: tuple[str, ...]) -> None:
+    """Refuse a file that can't be written or has another suffix, before work is spent on it."""
+    if path.suffix.lower() not in suffixes:
+        raise InputError(flag, str(path), f"the name must end in {' or '.join(suffixes)}")
+    if path.is_dir():
+        raise InputError(flag, str(path), "is a folder")
+    if not path.parent.is_dir():
+        raise InputError(flag, str(path), f"the folder {path.parent} does not exist")
+    if not os.access(path.parent, os.W_OK | os.X_OK):
+        raise InputError(flag, str(path), f"the folder {path.parent} can't be written")
+
+
+FRAME_NUMBER = re.compile(r"%0?(\d*)d")
+
+
+def frame_file(pattern: Path, frame: int) -> Path:
+    """``out.%04d.png`` for frame 7 is ``out.0007.png``; a name without a pattern is itself."""
+    return pattern.with_name(FRAME_NUMBER.sub(lambda m: f"{frame:0{m[1] or 1}d}", pattern.name))

@@ -1,0 +1,113 @@
+"""``elemental shot``: the frame as a file, headless, the same every time."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from . import __version__
+from .frame import VIEWS, Frame, Renderer
+from .gpu.device import Device
+from .picture import SUFFIXES, save_picture
+from .report import (
+    SCHEMA,
+    PassEntry,
+    Report,
+    bytes_entry,
+    driver_entry,
+    overflow_warnings,
+    say,
+    scene_entry,
+    settings_entry,
+    write_json,
+)
+from .session import (
+    FRAME_NUMBER,
+    Point,
+    Stage,
+    Viewpoint,
+    check_output,
+    frame_file,
+    known_name,
+    set_stage,
+)
+
+
+@dataclass(frozen=True)
+class Shot:
+    """The words of one ``elemental shot``: pixels, seconds, metres and degrees."""
+
+    scene: str | None
+    output: Path
+    size: tuple[int, int]
+    frames: int
+    fps: float
+    time: float
+    seed: int
+    camera: str | None
+    eye: Point | None
+    target: Point | None
+    fov: float | None
+    view: str
+    assignments: list[str]
+    report: Path | None
+
+
+def shoot(shot: Shot) -> None:
+    """Render frames 0 to N-1, 1/fps apart in scene time, and write the last one.
+
+    An output name with a frame number (``out.%04d.png``) gets each frame. Everything that can be
+    refused is refused before the first frame. Raises InputError.
+    """
+    check_output("-o", shot.output, SUFFIXES)
+    if shot.report is not None:
+        check_output("--report", shot.report, (".json",))
+    known_name("--view", shot.view, list(VIEWS))
+    viewpoint = Viewpoint(shot.camera, shot.eye, shot.target, shot.fov)
+    stage = set_stage(shot.scene, shot.assignments, viewpoint, shot.size)
+    device = Device.headless()
+    renderer = Renderer(device, stage.scene, stage.settings, shot.size)
+    is_sequence = FRAME_NUMBER.search(shot.output.name) is not None
+    for index in range(shot.frames):
+        began = time.perf_counter()
+        frame = renderer.render(stage.camera, shot.time + index / shot.fps, index, shot.view)
+        device.ctx.finish()
+        wall_ms = 1e3 * (time.perf_counter() - began)
+        if is_sequence or index == shot.frames - 1:
+            file = frame_file(shot.output, index)
+            save_picture(file, renderer.read(frame), frame.is_linear)
+    report = _report(shot, stage, device, frame, wall_ms)
+    if shot.report is not None:
+        write_json(shot.report, report)
+    say(report["warnings"], report["notes"])
+    print(frame_file(shot.output, shot.frames - 1))
+
+
+def _report(shot: Shot, stage: Stage, device: Device, frame: Frame, wall_ms: float) -> Report:
+    device.flush_reads()
+    passes = [PassEntry(name=t.name, gpu_ms=t.gpu_ms, cpu_ms=t.cpu_ms) for t in device.timings]
+    counters = {name: int(count) for name, count in frame.counters.items()}
+    return {
+        "schema": SCHEMA,
+        "elemental": __version__,
+        "scene": scene_entry(stage.scene),
+        "view": shot.view,
+        "size": list(shot.size),
+        "frames": shot.frames,
+        "time_s": shot.time,
+        "seed": shot.seed,
+        "settings": settings_entry(stage.settings),
+        "gl": driver_entry(device),
+        "passes": passes,
+        "frame": {
+            "gpu_ms": sum(entry["gpu_ms"] for entry in passes),
+            "cpu_ms": sum(entry["cpu_ms"] for entry in passes),
+            "wall_ms": wall_ms,
+        },
+        "counters": counters,
+        "bytes": bytes_entry(device),
+        "gl_messages": [str(message) for message in device.messages],
+        "warnings": stage.scene.warnings + overflow_warnings(counters),
+        "notes": list(stage.scene.notes),
+    }
