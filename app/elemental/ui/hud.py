@@ -1,0 +1,115 @@
+"""What the window says over the picture: pass times and counters, the bindings, short messages."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from imgui_bundle import imgui
+
+from .bindings import BINDINGS
+
+RED = imgui.ImVec4(1.0, 0.3, 0.25, 1.0)
+GREY = imgui.ImVec4(0.7, 0.7, 0.7, 1.0)
+MARGIN_PX = 10.0
+BACKGROUND_OPACITY = 0.75
+
+_PANEL = (
+    imgui.WindowFlags_.no_decoration.value
+    | imgui.WindowFlags_.always_auto_resize.value
+    | imgui.WindowFlags_.no_saved_settings.value
+    | imgui.WindowFlags_.no_focus_on_appearing.value
+    | imgui.WindowFlags_.no_nav.value
+    | imgui.WindowFlags_.no_inputs.value
+)
+_TABLE = imgui.TableFlags_.sizing_fixed_fit.value | imgui.TableFlags_.row_bg.value
+
+
+@dataclass(frozen=True)
+class Figures:
+    """What the HUD shows of one frame; times in ms, sizes in pixels and bytes."""
+
+    scene: str
+    driver: str
+    view: str
+    size: tuple[int, int]
+    frame_ms: float
+    """From one picture to the next."""
+    cpu_ms: float
+    """Spent in Python and the driver's calls for the frame."""
+    passes: Mapping[str, float]
+    """Averaged GPU time by pass."""
+    counters: Mapping[str, int]
+    bytes: Mapping[str, int]
+    time_s: float
+    paused: bool
+    speed: float
+    """Of the fly camera, m/s."""
+    problems: Sequence[str]
+    """Shader errors and GL messages that still stand."""
+
+
+def draw_hud(figures: Figures) -> None:
+    """The panel at the top left."""
+    _begin("hud", (MARGIN_PX, MARGIN_PX), (0.0, 0.0))
+    width, height = figures.size
+    imgui.text_unformatted(f"{figures.scene}  {width}x{height}  {figures.view}")
+    _colored(GREY, figures.driver)
+    rate = 1e3 / figures.frame_ms if figures.frame_ms > 0 else 0.0
+    imgui.text_unformatted(
+        f"{rate:.1f} frames/s  {figures.frame_ms:.2f} ms  CPU {figures.cpu_ms:.2f} ms"
+    )
+    paused = "  paused" if figures.paused else ""
+    _colored(GREY, f"time {figures.time_s:.2f} s{paused}  speed {figures.speed:.3g} m/s")
+    for problem in figures.problems:
+        _colored(RED, problem)
+    for name, count in figures.counters.items():
+        if "dropped" in name and count:
+            _colored(RED, f"{name.replace('_', ' ').upper()}: {count:,}")
+    rows = [(name, f"{ms:.3f} ms") for name, ms in figures.passes.items()]
+    rows.append(("all passes", f"{sum(figures.passes.values()):.3f} ms"))
+    _two_columns("passes", rows)
+    _two_columns("counters", [(n.replace("_", " "), f"{c:,}") for n, c in figures.counters.items()])
+    _two_columns("bytes", [(n, f"{b / 2**20:.1f} MiB") for n, b in figures.bytes.items()])
+    _colored(GREY, "F1 keys, F6 hides this")
+    imgui.end()
+
+
+def draw_help() -> None:
+    """All bindings, in the middle."""
+    center = imgui.get_main_viewport().get_center()
+    _begin("help", (center.x, center.y), (0.5, 0.5))
+    _two_columns("bindings", [(binding.keys_text(), binding.help) for binding in BINDINGS])
+    imgui.end()
+
+
+def draw_message(text: str) -> None:
+    """One line at the bottom."""
+    viewport = imgui.get_main_viewport()
+    _begin("message", (viewport.get_center().x, viewport.size.y - MARGIN_PX), (0.5, 1.0))
+    imgui.text_unformatted(text)
+    imgui.end()
+
+
+def _begin(name: str, place: tuple[float, float], pivot: tuple[float, float]) -> None:
+    always = imgui.Cond_.always.value
+    imgui.set_next_window_pos(imgui.ImVec2(*place), always, imgui.ImVec2(*pivot))
+    imgui.set_next_window_bg_alpha(BACKGROUND_OPACITY)
+    imgui.begin(name, None, _PANEL)
+
+
+def _colored(color: imgui.ImVec4, text: str) -> None:
+    imgui.push_style_color(imgui.Col_.text.value, color)
+    imgui.text_unformatted(text)
+    imgui.pop_style_color()
+
+
+def _two_columns(name: str, rows: Sequence[tuple[str, str]]) -> None:
+    imgui.separator()
+    if rows and imgui.begin_table(name, 2, _TABLE):
+        for left, right in rows:
+            imgui.table_next_column()
+            imgui.text_unformatted(left)
+            imgui.table_next_column()
+            imgui.text_unformatted(right)
+        imgui.end_table()
