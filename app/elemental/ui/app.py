@@ -1,0 +1,233 @@
+"""``elemental run``: the window's loop and what each binding does."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from ..core.errors import InputError
+from ..frame import VIEWS, Frame, Renderer
+from ..gpu.device import Device
+from ..picture import save_picture
+from ..session import Stage, Viewpoint, set_stage
+from .averages import Averages
+from .clock import SceneClock
+from .fly_camera import FAST_FACTOR, FlyCamera
+from .gui import Gui
+from .hud import Figures, draw_help, draw_hud, draw_message
+from .present import Presenter
+from .window import Events, GlfwLoader, Window
+
+MESSAGE_S = 4.0
+"""How long a message stays."""
+HIDDEN_WAIT_S = 0.1
+"""How often a minimised window looks for events."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """The words of one ``elemental run``; ``size`` in pixels, ``frames`` None until closed."""
+
+    scene: str | None
+    size: tuple[int, int]
+    assignments: list[str]
+    fullscreen: bool
+    frames: int | None
+
+
+def run(words: Run) -> None:
+    """Show the scene until the window is closed or ``words.frames`` are drawn.
+
+    Raises InputError for a bad scene or setting and where no window can be had.
+    """
+    stage = set_stage(words.scene, words.assignments, Viewpoint(), words.size)
+    window = Window(words.size, f"{stage.scene.name} – elemental", words.fullscreen)
+    app = App(window, stage, words)
+    try:
+        app.loop()
+    finally:
+        app.release()
+
+
+class App:
+    """One window, one scene, one renderer."""
+
+    def __init__(self, window: Window, stage: Stage, words: Run) -> None:
+        self.window, self.stage, self.words = window, stage, words
+        self.device = Device.from_window(GlfwLoader())
+        self.gui = Gui(window)
+        self.renderer = Renderer(self.device, stage.scene, stage.settings, words.size)
+        self.presenter = Presenter(self.device)
+        self.fly = FlyCamera.at(stage.camera, _diagonal(stage))
+        self.clock = SceneClock()
+        self.averages = Averages()
+        self.views = list(VIEWS)
+        self.view = "final"
+        self.drawn = 0
+        self.shows_hud, self.shows_help = True, False
+        self.frame: Frame | None = None
+        self._frame_s = self._cpu_ms = 0.0
+        self._message, self._message_until = "", 0.0
+
+    def loop(self) -> None:
+        """Draw frames until the end; a minimised window waits for events instead."""
+        before = time.perf_counter()
+        while not self.window.should_close() and self.drawn != self.words.frames:
+            size = self.window.framebuffer_size()
+            hidden = 0 in size
+            events = self.window.poll(HIDDEN_WAIT_S if hidden else 0.0)
+            now = time.perf_counter()
+            self._frame_s = self.clock.advance(now - before)
+            before = now
+            self.handle(events)
+            if not hidden:
+                self.draw(size)
+
+    def draw(self, size: tuple[int, int]) -> None:
+        """Render one frame of ``size`` pixels and show it under the panels."""
+        self.device.reload_shaders()
+        began = time.perf_counter()
+        self.renderer.resize(size)
+        camera = self.fly.camera()
+        self.frame = self.renderer.render(camera, self.clock.time_s, self.drawn, self.view)
+        self.presenter.show(self.frame, size)
+        self._cpu_ms = 1e3 * (time.perf_counter() - began)
+        timings = [(timing.name, timing.gpu_ms) for timing in self.device.timings]
+        self.averages.update([("frame", 1e3 * self._frame_s), *timings], self._frame_s)
+        with self.gui.frame():
+            self._panels(size)
+        self.window.swap()
+        self.drawn += 1
+
+    def handle(self, events: Events) -> None:
+        """Act on keys and mouse, unless a panel has them."""
+        if not self.gui.wants_keys:
+            for action, index, shift in events.pressed:
+                self.act(action, index, shift)
+            self._fly()
+        if not self.gui.wants_mouse:
+            self.fly.look(*events.drag_px)
+            self.fly.scroll(events.scroll)
+
+    def act(self, action: str, index: int = 0, shift: bool = False) -> None:
+        """What a ``press`` binding does; ``index`` tells which of its keys."""
+        match action:
+            case "camera.pick":
+                self._pick_camera(index)
+            case "camera.home":
+                self.fly.jump(self.stage.camera)
+            case "help":
+                self.shows_help = not self.shows_help
+            case "hud":
+                self.shows_hud = not self.shows_hud
+            case "fullscreen":
+                self.window.toggle_fullscreen()
+            case "screenshot":
+                self._screenshot()
+            case "reload":
+                self._reload()
+            case "view.next":
+                way = -1 if shift else 1
+                self.view = self.views[(self.views.index(self.view) + way) % len(self.views)]
+                self.say(f"{self.view}: {VIEWS[self.view]}")
+            case "pause":
+                self.clock.toggle()
+            case "step":
+                self.clock.step()
+            case "quit" if self.shows_help:
+                self.shows_help = False
+            case "quit":
+                self.window.close()
+
+    def say(self, message: str) -> None:
+        """Show a line for a while."""
+        self._message, self._message_until = message, time.perf_counter() + MESSAGE_S
+
+    def release(self) -> None:
+        """Free everything, the window last."""
+        self.gui.release()
+        self.presenter.release()
+        self.renderer.release()
+        self.device.release()
+        self.window.release()
+
+    def _fly(self) -> None:
+        held = self.window.held
+        factor = FAST_FACTOR if held("fly.fast") else 1.0
+        factor = factor / FAST_FACTOR if held("fly.slow") else factor
+        right = held("fly.right") - held("fly.left")
+        up = held("fly.up") - held("fly.down")
+        forward = held("fly.forward") - held("fly.back")
+        self.fly.fly(factor * right, factor * up, factor * forward, self._frame_s)
+
+    def _pick_camera(self, index: int) -> None:
+        cameras = self.stage.scene.cameras
+        if index < len(cameras):
+            self.fly.jump(cameras[index])
+            self.say(f"camera {index + 1}: {cameras[index].name}")
+        else:
+            self.say(f"the scene has {len(cameras)} cameras")
+
+    def _screenshot(self) -> None:
+        if self.frame is None:
+            return
+        stamp = time.strftime("%Y%m%d-%H%M%S")
+        path = Path(f"elemental-{stamp}-{self.drawn}.png").resolve()
+        try:
+            save_picture(path, self.renderer.read(self.frame), self.frame.is_linear)
+        except InputError as error:
+            self.say(str(error))
+        else:
+            self.say(f"wrote {path}")
+
+    def _reload(self) -> None:
+        """Read the scene again; a broken one is reported and the old one stays."""
+        size = self.window.framebuffer_size()
+        if 0 in size:
+            return
+        words = self.words
+        try:
+            stage = set_stage(words.scene, words.assignments, Viewpoint(), size)
+        except InputError as error:
+            self.say(str(error))
+            return
+        self.frame = None
+        self.renderer.release()
+        self.stage = stage
+        self.renderer = Renderer(self.device, stage.scene, stage.settings, size)
+        self.fly = replace(self.fly, diagonal=_diagonal(stage))
+        self.say(f"reloaded {stage.scene.name}")
+
+    def _panels(self, size: tuple[int, int]) -> None:
+        if self.shows_hud and self.frame is not None:
+            draw_hud(self._figures(size, self.frame))
+        if self.shows_help:
+            draw_help()
+        if time.perf_counter() < self._message_until:
+            draw_message(self._message)
+
+    def _figures(self, size: tuple[int, int], frame: Frame) -> Figures:
+        passes = dict(self.averages.values)
+        return Figures(
+            scene=self.stage.scene.name,
+            driver=self.device.info.renderer,
+            view=self.view,
+            size=size,
+            frame_ms=passes.pop("frame", 0.0),
+            cpu_ms=self._cpu_ms,
+            passes=passes,
+            counters=frame.counters,
+            bytes=self.device.bytes(),
+            time_s=self.clock.time_s,
+            paused=self.clock.paused,
+            speed=self.fly.speed,
+            problems=self.device.problems(),
+        )
+
+
+def _diagonal(stage: Stage) -> float:
+    low, high = stage.scene.bounds()
+    return float(np.linalg.norm(high.astype(np.float64) - low))
