@@ -1,0 +1,264 @@
+"""The device: context, resources, programs, frames; the only maker of GL objects."""
+
+from __future__ import annotations
+
+from collections import Counter, deque
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from elemental.core.paths import glsl_root
+from elemental.gpu import gl as c
+from elemental.gpu.execute import Executor
+from elemental.gpu.formats import Format
+from elemental.gpu.graph import Graph
+from elemental.gpu.library import ShaderLibrary
+from elemental.gpu.messages import GlError, Messages
+from elemental.gpu.params import ParamRing
+from elemental.gpu.program import Program
+from elemental.gpu.readback import ReadbackQueue
+from elemental.gpu.resources import Buffer, Texture, TextureDesc, VertexInput
+from elemental.gpu.shaders import Shader
+from elemental.gpu.timers import PassTimers, PassTiming
+
+FRAMES_IN_FLIGHT = 3
+"""Frames that the CPU may run ahead; without a bound a software driver's queue grows."""
+
+
+class GpuMemoryError(MemoryError):
+    """The driver, or the device's budget, has no memory for a resource."""
+
+
+@dataclass(frozen=True, slots=True)
+class DeviceInfo:
+    """What the driver says about itself."""
+
+    renderer: str
+    version: str
+    vendor: str
+    software: bool
+
+
+class Device:
+    """A GL context with everything that is made in it."""
+
+    def __init__(self, ctx: moderngl.Context, loader: c.Loader, debug: bool = False) -> None:
+        self.ctx = ctx
+        self._loader = loader
+        self.gl = c.GL(loader, ctx.version_code)
+        self.debug = debug
+        self.log = Messages(self.gl)
+        self.memory_budget: int | None = None
+        """Bytes that may be allocated; None: as many as the driver gives."""
+        info = ctx.info
+        renderer = str(info["GL_RENDERER"])
+        software = any(word in renderer.lower() for word in ("llvmpipe", "softpipe", "swrast"))
+        self.info = DeviceInfo(renderer, str(info["GL_VERSION"]), str(info["GL_VENDOR"]), software)
+        self.storage_limit = self.gl.integer(c.MAX_SHADER_STORAGE_BLOCK_SIZE)
+        self.max_anisotropy = float(ctx.max_anisotropy)
+        self.scratch_unit = ctx.max_texture_units - 1
+        """Texture unit of uploads and allocations, used by no pass."""
+        self.shader_root: Path = glsl_root()
+        self.frame = 0
+        """Number of graphs executed."""
+        self._bytes: Counter[str] = Counter()
+        self._fences: deque[int] = deque()
+        self.library = ShaderLibrary(self)
+        self.executor = Executor(self)
+        self.params = ParamRing(self)
+        self.readbacks = ReadbackQueue(self)
+        self.timers = PassTimers(self.gl)
+        self.gl.glEnable(c.TEXTURE_CUBE_MAP_SEAMLESS)
+
+    @classmethod
+    def headless(cls, debug: bool = False) -> Device:
+        """A device without a window: EGL, else OSMesa. Raises RuntimeError with both reasons."""
+        from elemental.gpu.headless import create
+
+        return cls(*create(), debug=debug)
+
+    @classmethod
+    def from_window(cls, loader: Callable[[str], Any] | c.Loader, debug: bool = False) -> Device:
+        """A device on the window's current context; ``loader`` may be glfw.get_proc_address."""
+        from elemental.gpu.headless import adopt
+
+        return cls(*adopt(loader), debug=debug)
+
+    # Resources ---------------------------------------------------------------------------------
+
+    def buffer(
+        self, name: str, contents: npt.NDArray[Any] | bytes | int, category: str = "other"
+    ) -> Buffer:
+        """A persistent buffer of ``contents``, or of so many undefined bytes."""
+        if isinstance(contents, (int, np.integer)):
+            return Buffer(self, name, max(int(contents), 4), None, category)
+        raw = contents if isinstance(contents, bytes) else np.ascontiguousarray(contents).tobytes()
+        raw = raw or bytes(4)
+        return Buffer(self, name, len(raw), raw, category)
+
+    def texture(
+        self,
+        name: str,
+        size: tuple[int, ...],
+        format: Format,
+        mips: int = 1,
+        layers: int | None = None,
+        cube: bool = False,
+        data: npt.NDArray[Any] | bytes | None = None,
+        category: str = "textures",
+    ) -> Texture:
+        """A persistent texture: 2D, 3D by three extents, an array by ``layers``.
+
+        ``data`` fills level 0, rows bottom up, and the other levels by box filter.
+        """
+        texture = Texture(self, name, TextureDesc(tuple(size), format, mips, layers, cube), category)
+        if data is not None:
+            texture.write(data)
+            if mips > 1:
+                texture.generate_mips()
+        return texture
+
+    def vertex_input(
+        self,
+        content: Sequence[tuple[Buffer, str, Sequence[str]]],
+        index: Buffer | None = None,
+    ) -> VertexInput:
+        """Vertex buffers, each with its moderngl format and attribute names; uint32 indices.
+
+        ``"3f"`` holds three floats, ``"4f1"`` four normalized bytes, ``"1u/i"`` a uint an instance.
+        """
+        return VertexInput(self, content, index)
+
+    def allocated(self, resource: Texture | Buffer, nbytes: int) -> None:
+        """The one check for lack of memory; called by each resource once it is made."""
+        if nbytes >= _CHECKED_BYTES or self.debug:
+            error = self.gl.glGetError()
+            if error == c.OUT_OF_MEMORY:
+                self.log.drop_out_of_memory()
+        else:
+            error = 0
+        self.executor.texture_unit_changed()
+        self._bytes[resource.category] += nbytes
+        over = self.memory_budget is not None and sum(self._bytes.values()) > self.memory_budget
+        if error == c.OUT_OF_MEMORY or over:
+            reason = "the driver is out of memory" if error else "the memory budget is spent"
+            resource.release()
+            raise GpuMemoryError(f"{resource!r} of {nbytes / 2**20:.1f} MiB: {reason}")
+        if error:
+            raise GlError(f"making {resource!r}: GL error 0x{error:X}")
+
+    def released(self, resource: Texture | Buffer) -> None:
+        """Undo ``allocated``."""
+        self._bytes[resource.category] -= resource.nbytes
+        if isinstance(resource, Texture):
+            self.executor.framebuffers.forget(resource.serial)
+
+    def bind_for_update(self, texture: Texture) -> None:
+        """Bind a texture to the unit that no pass uses."""
+        self.gl.glActiveTexture(c.TEXTURE0 + self.scratch_unit)
+        self.gl.glBindTexture(texture.target, texture.glo)
+        self.executor.texture_unit_changed()
+
+    def bytes(self) -> dict[str, int]:
+        """Bytes allocated now, by category."""
+        return {name: self._bytes[name] for name in sorted(self._bytes) if self._bytes[name]}
+
+    # Programs ----------------------------------------------------------------------------------
+
+    def program(self, shader: Shader) -> Program:
+        """The compiled program. Raises ShaderError with ``file:line`` messages."""
+        return self.library.get(shader)
+
+    def reload_changed_shaders(self) -> list[str]:
+        """Recompile what changed on disk; a failing edit keeps the last good program.
+
+        Returns the compilers' messages of the failures.
+        """
+        return self.library.reload_changed()
+
+    def forget_vertex_input(self, serial: int) -> None:
+        """Free the vertex arrays of a released vertex input."""
+        self.library.forget_vertex_input(serial)
+
+    # Frames ------------------------------------------------------------------------------------
+
+    def begin_frame(self) -> Graph:
+        """A new graph. Outputs kept by the last frame go back to the pool."""
+        while len(self._fences) >= FRAMES_IN_FLIGHT:
+            fence = self._fences.popleft()
+            self.gl.glClientWaitSync(fence, 1, 10**10)
+            self.gl.glDeleteSync(fence)
+        self.executor.return_kept()
+        self.executor.pool.end_frame()
+        self.params.discard()
+        self.timers.collect()
+        self.readbacks.poll(self.frame)
+        return Graph(self)
+
+    def end_frame(self) -> None:
+        """Called when a graph has run. Raises GlError on debug devices if the driver complained."""
+        self._fences.append(self.gl.glFenceSync(c.SYNC_GPU_COMMANDS_COMPLETE, 0))
+        self.gl.glFlush()
+        self.frame += 1
+        if self.debug:
+            self.check()
+
+    def check(self) -> None:
+        """Raise GlError if the driver reported an error or a high severity message."""
+        self.log.check()
+
+    def flush_reads(self) -> None:
+        """Wait for the GPU and deliver every ``read_later``."""
+        self.readbacks.poll(self.frame, wait=True)
+
+    def finish(self) -> None:
+        """Wait for the GPU; then every timing and every ``read_later`` has arrived."""
+        self.gl.glFinish()
+        self.timers.collect(wait=True)
+        self.flush_reads()
+
+    @property
+    def messages(self) -> list[str]:
+        """What the driver said so far, without notifications."""
+        return [str(message) for message in self.log.messages]
+
+    @property
+    def timings(self) -> list[PassTiming]:
+        """Passes of the newest finished frame."""
+        return self.timers.timings
+
+    @property
+    def frame_ms(self) -> float:
+        """GPU time of the newest finished frame."""
+        return self.timers.frame_ms
+
+    def present(self, texture: Texture, size: tuple[int, int]) -> None:
+        """Copy ``texture`` onto the window's framebuffer of ``size`` pixels."""
+        gl = self.gl
+        source = self.executor.framebuffers.get([(texture, 0, -1)], None, (0, 0))
+        gl.glMemoryBarrier(c.FRAMEBUFFER_BARRIER)
+        gl.glBindFramebuffer(c.READ_FRAMEBUFFER, source)
+        gl.glBindFramebuffer(c.DRAW_FRAMEBUFFER, 0)
+        fits = texture.size[:2] == size
+        extent = (0, 0, *texture.size[:2], 0, 0, *size)
+        gl.glBlitFramebuffer(*extent, c.COLOR_BUFFER_BIT, c.NEAREST if fits else c.LINEAR)
+        gl.glBindFramebuffer(c.FRAMEBUFFER, 0)
+
+    def release(self) -> None:
+        """Free everything the device made for itself, then the context."""
+        self.gl.glFinish()
+        for part in (self.readbacks, self.executor, self.params, self.timers, self.library):
+            part.release()
+        while self._fences:
+            self.gl.glDeleteSync(self._fences.popleft())
+        self.log.release()
+        self.ctx.release()
+
+
+_CHECKED_BYTES = 1 << 20
+"""Smaller resources are checked for lack of memory on debug devices only."""

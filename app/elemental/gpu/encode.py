@@ -1,0 +1,134 @@
+"""What the draw callback of a raster pass draws with."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING, Any
+
+import moderngl
+
+from elemental.gpu import gl as c
+from elemental.gpu.binding import GraphError, bind, require_all
+from elemental.gpu.refs import AnyBuffer, BufferHandle, Ref, TextureHandle
+from elemental.gpu.resources import Buffer, VertexInput
+from elemental.gpu.state import RasterState
+
+if TYPE_CHECKING:
+    from elemental.gpu.execute import Executor
+    from elemental.gpu.passes import RasterPass
+
+_MODES = {
+    "points": moderngl.POINTS,
+    "lines": moderngl.LINES,
+    "line_strip": moderngl.LINE_STRIP,
+    "triangles": moderngl.TRIANGLES,
+    "triangle_strip": moderngl.TRIANGLE_STRIP,
+}
+_changed_states: dict[tuple[RasterState, tuple[tuple[str, Any], ...]], RasterState] = {}
+
+
+class Encoder:
+    """Draws of one raster pass. Program, targets and declared names are bound already."""
+
+    __slots__ = ("_executor", "_missing", "_node", "_seen")
+
+    def __init__(self, executor: Executor, node: RasterPass) -> None:
+        self._executor, self._node = executor, node
+        self._missing = set(node.missing)
+        self._seen: set[int] = set()
+
+    def bind(self, name: str, ref: Ref) -> None:
+        """Bind a texture or buffer that changes between draws. Raises GraphError.
+
+        A name that the program does not use is ignored if the source declares it.
+        """
+        program = self._node.program
+        slot = program.slots.get(name)
+        if slot is None:
+            raise GraphError(f"{program.shader!r}: no {name}")
+        self._missing.discard(name)
+        if not slot.active:
+            return
+        physical: list[Any] = []
+
+        def index_of(resource: Any) -> int:
+            transient = isinstance(resource, (TextureHandle, BufferHandle))
+            physical.append(resource.physical if transient else resource)
+            return len(physical) - 1
+
+        bindings, _, bit = bind(slot, ref, index_of, program)
+        self._executor.barrier([(resource, bit, False) for resource in physical])
+        self._executor.bind(bindings, physical)
+
+    def set(self, **changes: Any) -> None:
+        """Change fields of the pass's RasterState for the draws that follow."""
+        key = (self._node.state, tuple(sorted(changes.items())))
+        state = _changed_states.get(key)
+        if state is None:
+            state = _changed_states[key] = dataclasses.replace(self._node.state, **changes)
+        self._executor.set_state(state)
+
+    def draw(
+        self,
+        vertex_input: VertexInput | None,
+        count: int,
+        first: int = 0,
+        instances: int = 1,
+        mode: str = "triangles",
+    ) -> None:
+        """Draw ``count`` indices (or vertices, without an index buffer) from ``first``."""
+        if count and instances:
+            self._vertex_array(vertex_input).render(_MODES[mode], count, first, instances)
+
+    def draw_indirect(
+        self,
+        vertex_input: VertexInput,
+        commands: AnyBuffer,
+        count: int = 1,
+        first: int = 0,
+        mode: str = "triangles",
+    ) -> None:
+        """``count`` DrawElementsIndirectCommand (5 uint each) from number ``first``."""
+        physical = commands.physical if isinstance(commands, BufferHandle) else commands
+        if physical is None:
+            raise GraphError(f"{self._node.name}: name {commands.name} in uses=")
+        self._read(physical, c.COMMAND_BARRIER)
+        vertex_array = self._vertex_array(vertex_input)
+        vertex_array.render_indirect(physical.mgl, _MODES[mode], count, first)
+
+    def _vertex_array(self, vertex_input: VertexInput | None) -> moderngl.VertexArray:
+        program = self._node.program
+        if self._missing:
+            require_all(program, self._missing)
+        serial = 0
+        if vertex_input is not None:
+            serial = vertex_input.serial
+            if serial not in self._seen:
+                self._seen.add(serial)
+                for buffer, _, _ in vertex_input.content:
+                    self._read(buffer, c.VERTEX_ATTRIB_ARRAY_BARRIER)
+                if vertex_input.index is not None:
+                    self._read(vertex_input.index, c.ELEMENT_ARRAY_BARRIER)
+        vertex_array = program.vertex_arrays.get(serial)
+        if vertex_array is None:
+            vertex_array = self._make(program.mgl, vertex_input)
+            program.vertex_arrays[serial] = vertex_array
+        return vertex_array
+
+    def _read(self, buffer: Buffer, bit: int) -> None:
+        if buffer.serial not in self._seen:
+            self._seen.add(buffer.serial)
+            self._executor.barrier([(buffer, bit, False)])
+
+    def _make(self, program: Any, vertex_input: VertexInput | None) -> moderngl.VertexArray:
+        ctx = self._executor.device.ctx
+        if vertex_input is None:
+            return ctx.vertex_array(program, [])
+        content = [(buffer.mgl, layout, *names) for buffer, layout, names in vertex_input.content]
+        index = vertex_input.index.mgl if vertex_input.index else None
+        given = {name for _, _, names in vertex_input.content for name in names}
+        wanted = {name for name in program if isinstance(program[name], moderngl.Attribute)}
+        if wanted - given:
+            missing = ", ".join(sorted(wanted - given))
+            raise GraphError(f"{self._node.program.shader!r}: attribute {missing} not given")
+        return ctx.vertex_array(program, content, index, skip_errors=True)

@@ -1,0 +1,260 @@
+"""Planning a frame without GL: what runs, in which order, for how long a target lives, barriers.
+
+A pass declares what it reads, modifies (keeping what was there) and overwrites. Declaration order
+gives each resource its versions; the order of execution comes from the dependencies alone.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+
+class PlanError(Exception):
+    """A graph that can't be ordered: a cycle, or a target that is read and never written."""
+
+
+class PlannedPass(Protocol):
+    """What the planner needs of a pass; resources are indices into the graph's table."""
+
+    @property
+    def name(self) -> str:
+        """Name in messages."""
+
+    @property
+    def reads(self) -> Sequence[int]:
+        """Resources whose present content is used."""
+
+    @property
+    def modifies(self) -> Sequence[int]:
+        """Resources that are written and keep what is not written."""
+
+    @property
+    def overwrites(self) -> Sequence[int]:
+        """Resources whose earlier content is lost."""
+
+    @property
+    def has_side_effect(self) -> bool:
+        """True where the pass must run even if nothing reads what it writes."""
+
+
+class Schedule(NamedTuple):
+    """The passes that run and the resources they bring to life."""
+
+    order: list[int]
+    """Indices of the live passes in the order of execution."""
+    culled: list[int]
+    """Indices of the passes that nobody needs."""
+    births: list[list[int]]
+    """For each position of ``order``: transient resources first used there."""
+    deaths: list[list[int]]
+    """For each position of ``order``: transient resources last used there, not kept."""
+
+
+def schedule(
+    passes: Sequence[PlannedPass],
+    resources: Sequence[str],
+    persistent: Collection[int],
+    kept: Collection[int],
+) -> Schedule:
+    """Cull and order ``passes``.
+
+    ``resources`` are names by index; ``persistent`` ones outlive the frame, so their writers always
+    run; ``kept`` ones are the frame's outputs. A transient that is read before any pass wrote it,
+    in declaration order, is read in its final version, so its writers run first.
+    Raises PlanError for a cycle or for a transient that is read and never written.
+    """
+    needs, follows, late = _edges(passes, resources, persistent)
+    live = _live(passes, needs, persistent, kept)
+    order = [index for index, alive in enumerate(live) if alive]
+    if late:
+        order = _sorted(passes, order, needs, follows)
+    births, deaths = _lifetimes(passes, order, persistent, kept)
+    culled = [index for index, alive in enumerate(live) if not alive]
+    return Schedule(order, culled, births, deaths)
+
+
+def _edges(
+    passes: Sequence[PlannedPass], resources: Sequence[str], persistent: Collection[int]
+) -> tuple[list[set[int]], list[set[int]], bool]:
+    """(true dependencies, pure order dependencies, whether a read precedes its write)."""
+    needs: list[set[int]] = []
+    follows: list[set[int]] = []
+    writer: dict[int, int] = {}
+    readers: dict[int, list[int]] = {}
+    early_reads: dict[int, list[int]] = {}
+    for index, item in enumerate(passes):
+        need: set[int] = set()
+        follow: set[int] = set()
+        for resource in item.reads:
+            if resource in writer:
+                need.add(writer[resource])
+                readers.setdefault(resource, []).append(index)
+            elif resource in persistent:
+                readers.setdefault(resource, []).append(index)
+            else:
+                early_reads.setdefault(resource, []).append(index)
+        for resource in item.modifies:
+            if resource in writer:
+                need.add(writer[resource])
+        for resource in item.overwrites:
+            if resource in writer:
+                follow.add(writer[resource])
+        for written in (item.modifies, item.overwrites):
+            for resource in written:
+                follow.update(readers.pop(resource, ()))
+                writer[resource] = index
+        need.discard(index)
+        follow.discard(index)
+        needs.append(need)
+        follows.append(follow)
+    for resource, indices in early_reads.items():
+        final = writer.get(resource)
+        if final is None or indices == [final]:
+            reader = passes[indices[0]].name
+            raise PlanError(f"pass {reader} reads {resources[resource]}, which no pass writes")
+        for index in indices:
+            needs[index].add(final)
+    return needs, follows, bool(early_reads)
+
+
+def _live(
+    passes: Sequence[PlannedPass],
+    needs: list[set[int]],
+    persistent: Collection[int],
+    kept: Collection[int],
+) -> list[bool]:
+    live = [False] * len(passes)
+    stack: list[int] = []
+    unclaimed = set(kept)
+    for index in range(len(passes) - 1, -1, -1):
+        item = passes[index]
+        root = item.has_side_effect
+        for written in (item.modifies, item.overwrites):
+            for resource in written:
+                if resource in unclaimed:
+                    unclaimed.discard(resource)
+                    root = True
+                elif resource in persistent:
+                    root = True
+        if root:
+            stack.append(index)
+    while stack:
+        index = stack.pop()
+        if not live[index]:
+            live[index] = True
+            stack.extend(needs[index])
+    return live
+
+
+def _sorted(
+    passes: Sequence[PlannedPass],
+    live: list[int],
+    needs: list[set[int]],
+    follows: list[set[int]],
+) -> list[int]:
+    """Topological order of the live passes; among ready ones the first declared goes first."""
+    alive = set(live)
+    waiting = {index: (needs[index] | follows[index]) & alive for index in live}
+    unblocks: dict[int, list[int]] = {}
+    for index, before in waiting.items():
+        for earlier in before:
+            unblocks.setdefault(earlier, []).append(index)
+    ready = [index for index in live if not waiting[index]]
+    heapq.heapify(ready)
+    order: list[int] = []
+    while ready:
+        index = heapq.heappop(ready)
+        order.append(index)
+        for later in unblocks.get(index, ()):
+            waiting[later].discard(index)
+            if not waiting[later]:
+                heapq.heappush(ready, later)
+    if len(order) < len(live):
+        stuck = ", ".join(passes[index].name for index in live if waiting[index])
+        raise PlanError(f"passes wait for each other: {stuck}")
+    return order
+
+
+def _lifetimes(
+    passes: Sequence[PlannedPass],
+    order: list[int],
+    persistent: Collection[int],
+    kept: Collection[int],
+) -> tuple[list[list[int]], list[list[int]]]:
+    births: list[list[int]] = [[] for _ in order]
+    deaths: list[list[int]] = [[] for _ in order]
+    last: dict[int, int] = {}
+    for position, index in enumerate(order):
+        item = passes[index]
+        for used in (item.reads, item.modifies, item.overwrites):
+            for resource in used:
+                if resource in persistent:
+                    continue
+                if resource not in last:
+                    births[position].append(resource)
+                last[resource] = position
+    for resource, position in last.items():
+        if resource not in kept:
+            deaths[position].append(resource)
+    return births, deaths
+
+
+class Tracked(Protocol):
+    """A physical resource with the clock of its last shader write and of its last access."""
+
+    written_at: int
+    access_at: int
+
+
+@dataclass(slots=True)
+class Access:
+    """One use of a resource by a pass."""
+
+    resource: int
+    barrier: int
+    """The glMemoryBarrier bit that makes earlier shader writes visible to this use."""
+    shader_write: bool = False
+    """Written by image stores or storage blocks: not ordered by GL without a barrier."""
+
+
+class Hazards:
+    """Which barrier bits must precede each pass, over all frames of a device.
+
+    glMemoryBarrier acts on everything at once, so a resource needs a bit only where that bit was
+    not issued since the resource's last shader write (read or write after write) or, before a
+    shader write, since its last access of any kind (write after read) [GL 4.3, 7.12.2].
+    """
+
+    __slots__ = ("_issued", "clock")
+
+    def __init__(self) -> None:
+        self.clock = 1
+        self._issued: dict[int, int] = {}
+
+    def barrier_before(self, accesses: Sequence[tuple[Tracked, int, bool]]) -> int:
+        """Bits to issue before a pass that makes ``accesses`` (state, bit, shader write)."""
+        issued = self._issued
+        bits = 0
+        for state, bit, shader_write in accesses:
+            since = state.access_at if shader_write else state.written_at
+            if since and since > issued.get(bit, 0):
+                bits |= bit
+        if bits:
+            self.issued(bits)
+        self.clock = now = self.clock + 1
+        for state, _, shader_write in accesses:
+            state.access_at = now
+            if shader_write:
+                state.written_at = now
+        return bits
+
+    def issued(self, bits: int) -> None:
+        """Note that a barrier of ``bits`` was issued now."""
+        bit = 1
+        while bit <= bits:
+            if bits & bit:
+                self._issued[bit] = self.clock
+            bit <<= 1

@@ -1,0 +1,106 @@
+"""The pool of transient targets: allocation on demand, reuse by description, lazy release.
+
+[Mittring12 "Compositing Graph"], "RT on demand, ref. counting, lazy release".
+"""
+
+from __future__ import annotations
+
+import bisect
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass
+from typing import Generic, Protocol, TypeVar
+
+
+class Pooled(Protocol):
+    """What the pool needs of a resource."""
+
+    @property
+    def serial(self) -> int:
+        """Unique number; the lowest free one is handed out first, so frames repeat exactly."""
+
+    @property
+    def nbytes(self) -> int:
+        """Size in video memory."""
+
+    def release(self) -> None:
+        """Free it."""
+
+
+T = TypeVar("T", bound=Pooled)
+
+
+@dataclass(slots=True)
+class PoolStats:
+    """Counts since the pool was made."""
+
+    bytes: int = 0
+    """Bytes that the pool holds now, in use or free."""
+    high_water: int = 0
+    """Largest ``bytes`` so far."""
+    in_use: int = 0
+    """Resources handed out now."""
+    allocations: int = 0
+    reuses: int = 0
+    freed: int = 0
+
+
+class TargetPool(Generic[T]):
+    """Resources by description. ``make(description)`` allocates one."""
+
+    def __init__(self, make: Callable[[Hashable], T], idle_frames: int = 8) -> None:
+        self._make = make
+        self.idle_frames = idle_frames
+        """Frames that a free resource waits before it is released."""
+        self.stats = PoolStats()
+        self._frame = 0
+        self._free: dict[Hashable, list[tuple[int, T]]] = {}
+        self._idle_since: dict[int, int] = {}
+
+    def acquire(self, description: Hashable) -> T:
+        """A free resource of ``description``, or a new one."""
+        self.stats.in_use += 1
+        free = self._free.get(description)
+        if free:
+            self.stats.reuses += 1
+            return free.pop(0)[1]
+        try:
+            resource = self._make(description)
+        except Exception:
+            self.stats.in_use -= 1
+            raise
+        self.stats.allocations += 1
+        self.stats.bytes += resource.nbytes
+        self.stats.high_water = max(self.stats.high_water, self.stats.bytes)
+        return resource
+
+    def give_back(self, description: Hashable, resource: T) -> None:
+        """Return a resource; the next request of the same description may have it."""
+        self.stats.in_use -= 1
+        self._idle_since[resource.serial] = self._frame
+        bisect.insort(self._free.setdefault(description, []), (resource.serial, resource))
+
+    def end_frame(self) -> None:
+        """Count a frame and release what lay idle for ``idle_frames``."""
+        self._frame += 1
+        limit = self._frame - self.idle_frames
+        for description, free in list(self._free.items()):
+            if any(self._idle_since[serial] < limit for serial, _ in free):
+                stale = [r for serial, r in free if self._idle_since[serial] < limit]
+                free[:] = [item for item in free if self._idle_since[item[0]] >= limit]
+                for resource in stale:
+                    self._drop(resource)
+            if not free:
+                del self._free[description]
+
+    def clear(self) -> None:
+        """Release everything that is free."""
+        for free in self._free.values():
+            for _, resource in free:
+                self._drop(resource)
+        self._free.clear()
+
+    def _drop(self, resource: T) -> None:
+        self.stats.freed += 1
+        self.stats.bytes -= resource.nbytes
+        del self._idle_since[resource.serial]
+        resource.release()

@@ -1,0 +1,125 @@
+"""Fixed-function state of a raster pass."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from elemental.gpu import gl as c
+
+_COMPARE = {
+    "never": c.NEVER, "less": c.LESS, "equal": c.EQUAL, "lequal": c.LEQUAL, "greater": c.GREATER,
+    "notequal": c.NOTEQUAL, "gequal": c.GEQUAL, "always": c.ALWAYS,
+}  # fmt: skip
+_STENCIL_OPS = {
+    "keep": c.KEEP, "zero": c.ZERO, "replace": c.REPLACE, "incr": c.INCR, "decr": c.DECR,
+    "invert": c.INVERT,
+}  # fmt: skip
+_FACES = {"back": c.BACK, "front": c.FRONT}
+_BLENDS = {
+    # colour source, colour destination, alpha source, alpha destination
+    "add": (c.ONE, c.ONE, c.ONE, c.ONE),
+    "alpha": (c.SRC_ALPHA, c.ONE_MINUS_SRC_ALPHA, c.ONE, c.ONE_MINUS_SRC_ALPHA),
+    "premultiplied": (c.ONE, c.ONE_MINUS_SRC_ALPHA, c.ONE, c.ONE_MINUS_SRC_ALPHA),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Stencil:
+    """Stencil test, the same for both faces."""
+
+    test: str = "always"
+    reference: int = 0
+    read_mask: int = 0xFF
+    write_mask: int = 0xFF
+    fail: str = "keep"
+    depth_fail: str = "keep"
+    on_pass: str = "keep"
+
+
+@dataclass(frozen=True, slots=True)
+class RasterState:
+    """State of a raster pass; make it a module constant."""
+
+    cull: str = "none"
+    """back, front or none; counter-clockwise triangles face front."""
+    depth_test: str = "none"
+    """none, or the comparison that a fragment must pass: less, lequal, equal, always, …"""
+    depth_write: bool = True
+    """Written only where ``depth_test`` is not none."""
+    blend: str | tuple[str | None, ...] | None = None
+    """None, add, alpha or premultiplied; a tuple holds one for each colour target."""
+    stencil: Stencil | None = None
+    color_mask: tuple[bool, bool, bool, bool] = (True, True, True, True)
+    polygon_offset: tuple[float, float] | None = None
+    """(slope factor, constant units)."""
+
+    def __post_init__(self) -> None:
+        if self.cull not in (*_FACES, "none"):
+            raise ValueError(f"cull {self.cull!r}")
+        if self.depth_test not in (*_COMPARE, "none"):
+            raise ValueError(f"depth_test {self.depth_test!r}")
+        blends = self.blend if isinstance(self.blend, tuple) else (self.blend,)
+        if any(blend is not None and blend not in _BLENDS for blend in blends):
+            raise ValueError(f"blend {self.blend!r}")
+        if self.stencil:
+            operations = (self.stencil.fail, self.stencil.depth_fail, self.stencil.on_pass)
+            if self.stencil.test not in _COMPARE or any(o not in _STENCIL_OPS for o in operations):
+                raise ValueError(f"stencil {self.stencil}")
+
+
+DEFAULT = RasterState()
+SCENE = RasterState(cull="back", depth_test="lequal")
+
+
+def apply(gl: c.GL, state: RasterState) -> None:
+    """Set every piece of state that RasterState covers."""
+    _switch(gl, c.CULL_FACE, state.cull != "none")
+    if state.cull != "none":
+        gl.glCullFace(_FACES[state.cull])
+    depth = state.depth_test != "none"
+    _switch(gl, c.DEPTH_TEST, depth)
+    if depth:
+        gl.glDepthFunc(_COMPARE[state.depth_test])
+    gl.glDepthMask(state.depth_write and depth)
+    _apply_blend(gl, state.blend)
+    stencil = state.stencil
+    _switch(gl, c.STENCIL_TEST, stencil is not None)
+    if stencil is not None:
+        gl.glStencilFunc(_COMPARE[stencil.test], stencil.reference, stencil.read_mask)
+        gl.glStencilOp(
+            _STENCIL_OPS[stencil.fail],
+            _STENCIL_OPS[stencil.depth_fail],
+            _STENCIL_OPS[stencil.on_pass],
+        )
+        gl.glStencilMask(stencil.write_mask)
+    gl.glColorMask(*state.color_mask)
+    _switch(gl, c.POLYGON_OFFSET_FILL, state.polygon_offset is not None)
+    if state.polygon_offset is not None:
+        gl.glPolygonOffset(*state.polygon_offset)
+
+
+def prepare_clear(gl: c.GL) -> None:
+    """Open every write mask, which clears obey."""
+    gl.glColorMask(True, True, True, True)
+    gl.glDepthMask(True)
+    gl.glStencilMask(0xFF)
+
+
+def _apply_blend(gl: c.GL, blend: str | tuple[str | None, ...] | None) -> None:
+    if isinstance(blend, tuple):
+        gl.glDisable(c.BLEND)
+        for target, mode in enumerate(blend):
+            if mode is not None:
+                gl.glEnablei(c.BLEND, target)
+                gl.glBlendFuncSeparatei(target, *_BLENDS[mode])
+        return
+    _switch(gl, c.BLEND, blend is not None)
+    if blend is not None:
+        gl.glBlendFuncSeparate(*_BLENDS[blend])
+
+
+def _switch(gl: c.GL, capability: int, on: bool) -> None:
+    if on:
+        gl.glEnable(capability)
+    else:
+        gl.glDisable(capability)
