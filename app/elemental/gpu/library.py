@@ -22,7 +22,7 @@ class ShaderLibrary:
         self._device = device
         self._programs: dict[Shader, Program] = {}
         self._stamps: dict[Path, int] = {}
-        self._retry: set[Shader] = set()
+        self._failures: dict[Shader, str] = {}
 
     def get(self, shader: Shader) -> Program:
         """The program of ``shader``, compiled on first use. Raises ShaderError."""
@@ -49,22 +49,26 @@ class ShaderLibrary:
             return []
         errors = []
         for shader, old in list(self._programs.items()):
-            if shader not in self._retry and changed.isdisjoint(old.files):
+            if shader not in self._failures and changed.isdisjoint(old.files):
                 continue
             try:
                 new = compile_program(self._device, shader)
             except ShaderError as error:
-                self._retry.add(shader)
+                self._failures[shader] = str(error)
                 errors.append(str(error))
                 _log.error("%s keeps its last good program:\n%s", shader.name, error)
                 continue
-            self._retry.discard(shader)
+            self._failures.pop(shader, None)
             self._programs[shader] = new
             old.release()
             for file in new.files:
                 self._stamps.setdefault(file, _stamp(file))
             _log.info("reloaded %s", shader.name)
         return errors
+
+    def problems(self) -> list[str]:
+        """The compilers' messages for the shaders that still run an older program."""
+        return list(self._failures.values())
 
     def forget_vertex_input(self, serial: int) -> None:
         """Free the vertex arrays made for a vertex input."""
