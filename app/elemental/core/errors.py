@@ -17,3 +17,24 @@ class InputError(Exception):
         self.reason = reason
         parts = (part for part in (self.file, field, reason) if part)
         super().__init__(": ".join(" ".join(part.split()) for part in parts))
+
+    @property
+    def lines(self) -> list[str]:
+        """What to print, a line for each thing that is wrong."""
+        return [str(self)]
+
+
+class InputErrors(InputError):
+    """Several things wrong in one file, all found at once: a line each."""
+
+    def __init__(self, file: str | Path, reasons: list[tuple[str, str]]) -> None:
+        """`reasons`: (field, reason), at least one."""
+        super().__init__(file, *reasons[0])
+        self.errors = [InputError(file, field, reason) for field, reason in reasons]
+
+    def __str__(self) -> str:
+        return "\n".join(self.lines)
+
+    @property
+    def lines(self) -> list[str]:
+        return [line for error in self.errors for line in error.lines]

@@ -42,7 +42,7 @@ class Member(NamedTuple):
 
     type: str
     name: str
-    count: int | None
+    extent: int | None
     """Elements of an array; 0: runtime sized; None: no array."""
 
 
@@ -69,7 +69,8 @@ class Layouts:
         self._done: dict[tuple[str, str], np.dtype[np.void]] = {}
         self.files: dict[str, Path] = {}
         """File of each struct and block."""
-        texts = [(file, _COMMENT.sub(" ", file.read_text())) for file in sorted(folder.glob("*.glsl"))]
+        files = sorted(folder.glob("*.glsl"))
+        texts = [(file, _COMMENT.sub(" ", file.read_text())) for file in files]
         self._read_constants("\n".join(text for _, text in texts))
         for file, text in texts:
             for match in _STRUCT.finditer(text):
@@ -109,8 +110,10 @@ class Layouts:
     def _read_constants(self, text: str) -> None:
         pending = []
         for match in _CONSTANT.finditer(text):
-            is_float = match["type"] == "float"
-            pending.append((match["name"] or match["macro"], match["value"] or match["text"], is_float))
+            name, expression = match["name"], match["value"]
+            if name is None:
+                name, expression = match["macro"], match["text"]
+            pending.append((name, expression, match["type"] == "float"))
         while pending:
             left = []
             for name, expression, is_float in pending:
@@ -143,7 +146,7 @@ class Layouts:
         offset, align = 0, 16 if rule == "std140" else 4
         names, formats, offsets, info = [], [], [], {}
         for member in members:
-            if member.count == 0:
+            if member.extent == 0:
                 break
             laid = self._member(member, rule)
             offset = _round_up(offset, laid.align)
@@ -162,15 +165,15 @@ class Layouts:
 
     def _member(self, member: Member, rule: str) -> _Laid:
         laid = self._type(member.type, rule)
-        if member.count is None:
+        if member.extent is None:
             return laid
         align = _round_up(laid.align, 16) if rule == "std140" else laid.align
         stride = _round_up(laid.size, align)
-        shape, given = laid.shape, (member.count, *laid.given)
+        shape, given = laid.shape, (member.extent, *laid.given)
         if laid.dtype.fields is None and not laid.matrix and stride > laid.size:
             shape = (stride // 4,)
         return _Laid(
-            align, stride * member.count, laid.dtype, (member.count, *shape), given, laid.matrix
+            align, stride * member.extent, laid.dtype, (member.extent, *shape), given, laid.matrix
         )
 
     def _type(self, name: str, rule: str) -> _Laid:

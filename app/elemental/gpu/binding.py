@@ -136,7 +136,8 @@ def bind(
                 f"{program.shader!r}: {slot.name} takes {slot.count} textures, {len(refs)} given"
             )
         bindings: list[Binding] = [
-            _sampler(slot, element, offset, index_of, program) for offset, element in enumerate(refs)
+            _sampler(slot, element, offset, index_of, program)
+            for offset, element in enumerate(refs)
         ]
         return bindings, [item.resource for item in bindings], c.TEXTURE_FETCH_BARRIER
     if slot.kind == IMAGE:

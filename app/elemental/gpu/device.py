@@ -17,6 +17,7 @@ from elemental.gpu import gl as c
 from elemental.gpu.execute import Executor
 from elemental.gpu.formats import Format
 from elemental.gpu.graph import Graph
+from elemental.gpu.headless import adopt, create
 from elemental.gpu.library import ShaderLibrary
 from elemental.gpu.messages import GlError, Messages
 from elemental.gpu.params import ParamRing
@@ -78,15 +79,11 @@ class Device:
     @classmethod
     def headless(cls, debug: bool = False) -> Device:
         """A device without a window: EGL, else OSMesa. Raises RuntimeError with both reasons."""
-        from elemental.gpu.headless import create
-
         return cls(*create(), debug=debug)
 
     @classmethod
     def from_window(cls, loader: Callable[[str], Any] | c.Loader, debug: bool = False) -> Device:
         """A device on the window's current context; ``loader`` may be glfw.get_proc_address."""
-        from elemental.gpu.headless import adopt
-
         return cls(*adopt(loader), debug=debug)
 
     # Resources ---------------------------------------------------------------------------------
@@ -106,6 +103,7 @@ class Device:
         name: str,
         size: tuple[int, ...],
         format: Format,
+        *,
         mips: int = 1,
         layers: int | None = None,
         cube: bool = False,
@@ -116,7 +114,8 @@ class Device:
 
         ``data`` fills level 0, rows bottom up, and the other levels by box filter.
         """
-        texture = Texture(self, name, TextureDesc(tuple(size), format, mips, layers, cube), category)
+        desc = TextureDesc(tuple(size), format, mips, layers, cube)
+        texture = Texture(self, name, desc, category)
         if data is not None:
             texture.write(data)
             if mips > 1:

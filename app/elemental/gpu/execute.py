@@ -90,7 +90,8 @@ class Executor:
         passes, resources = graph.passes, graph.resources
         names = [resource.name for resource in resources]
         plan = schedule(passes, names, graph.persistent, graph.kept)
-        self._physical = physical = list(resources)
+        physical: list[Any] = list(resources)
+        self._physical = physical
         held: set[int] = set()
         self.forget_bindings()
         self._params = device.params.upload()
@@ -262,8 +263,10 @@ class Executor:
 
     def _clear_targets(self, node: RasterPass, color: Sequence[Any], depth: Any) -> None:
         clears = [item[3] for item in node.color]
-        if node.clear_depth is None and node.clear_stencil is None and not any(
-            clear is not None for clear in clears
+        if (
+            node.clear_depth is None
+            and node.clear_stencil is None
+            and not any(clear is not None for clear in clears)
         ):
             return
         gl = self.gl

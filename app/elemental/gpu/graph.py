@@ -22,8 +22,16 @@ from elemental.gpu.binding import (
     require_all,
 )
 from elemental.gpu.formats import Format
-from elemental.gpu.passes import ClearBuffer, ClearTexture, ComputePass, Copy, Pass, RasterPass, Readback
-from elemental.gpu.program import STORAGE_BLOCK, Program
+from elemental.gpu.passes import (
+    ClearBuffer,
+    ClearTexture,
+    ComputePass,
+    Copy,
+    Pass,
+    RasterPass,
+    Readback,
+)
+from elemental.gpu.program import Program
 from elemental.gpu.refs import (
     AnyBuffer,
     AnyTexture,
@@ -67,6 +75,7 @@ class Graph:
         name: str,
         size: tuple[int, ...] | None = None,
         format: Format | None = None,
+        *,
         like: AnyTexture | None = None,
         mips: int | None = None,
         layers: int | None = None,
@@ -316,7 +325,9 @@ class Graph:
         texture, level, _ = _target(target)
         width, height = level_size(texture.desc.size, level)[:2]
         if extent is not None and extent != (width, height):
-            raise GraphError(f"{node.name}: target {texture.name} is {width}x{height}, not {extent}")
+            raise GraphError(
+                f"{node.name}: target {texture.name} is {width}x{height}, not {extent}"
+            )
         return width, height
 
 

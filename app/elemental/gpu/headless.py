@@ -7,7 +7,7 @@ import ctypes.util
 from collections.abc import Callable
 from typing import Any
 
-import glcontext
+import glcontext  # type: ignore[import-untyped]
 import moderngl
 
 from elemental.gpu import gl as c
@@ -28,7 +28,7 @@ def create() -> tuple[moderngl.Context, c.Loader]:
     for name, make in (("EGL", _egl), ("OSMesa", OsMesaContext)):
         try:
             loader = make()
-            return moderngl.create_context(require=GL_VERSION, context=loader), loader
+            return _wrap(loader), loader
         except Exception as error:
             reasons.append(f"{name}: {' '.join(str(error).split())}")
     raise RuntimeError("no OpenGL 4.3 context without a window; " + "; ".join(reasons))
@@ -36,8 +36,15 @@ def create() -> tuple[moderngl.Context, c.Loader]:
 
 def adopt(loader: Callable[[str], Any] | c.Loader) -> tuple[moderngl.Context, c.Loader]:
     """(context, loader) of the context that is current, as a window's is."""
-    wrapped = loader if hasattr(loader, "load_opengl_function") else _CallableLoader(loader)
-    return moderngl.create_context(require=GL_VERSION, context=wrapped), wrapped  # type: ignore[return-value]
+    wrapped: Any = loader
+    if not hasattr(loader, "load_opengl_function"):
+        wrapped = _CallableLoader(wrapped)
+    return _wrap(wrapped), wrapped
+
+
+def _wrap(loader: Any) -> moderngl.Context:
+    """moderngl's stubs know ``context`` as settings of a context, not as the context."""
+    return moderngl.create_context(require=GL_VERSION, context=loader)
 
 
 def _egl() -> Any:

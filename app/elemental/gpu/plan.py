@@ -86,26 +86,14 @@ def _edges(
     readers: dict[int, list[int]] = {}
     early_reads: dict[int, list[int]] = {}
     for index, item in enumerate(passes):
-        need: set[int] = set()
-        follow: set[int] = set()
+        need = {writer[r] for r in (*item.reads, *item.modifies) if r in writer}
+        follow = {writer[r] for r in item.overwrites if r in writer}
         for resource in item.reads:
-            if resource in writer:
-                need.add(writer[resource])
-                readers.setdefault(resource, []).append(index)
-            elif resource in persistent:
-                readers.setdefault(resource, []).append(index)
-            else:
-                early_reads.setdefault(resource, []).append(index)
-        for resource in item.modifies:
-            if resource in writer:
-                need.add(writer[resource])
-        for resource in item.overwrites:
-            if resource in writer:
-                follow.add(writer[resource])
-        for written in (item.modifies, item.overwrites):
-            for resource in written:
-                follow.update(readers.pop(resource, ()))
-                writer[resource] = index
+            known = resource in writer or resource in persistent
+            (readers if known else early_reads).setdefault(resource, []).append(index)
+        for resource in (*item.modifies, *item.overwrites):
+            follow.update(readers.pop(resource, ()))
+            writer[resource] = index
         need.discard(index)
         follow.discard(index)
         needs.append(need)

@@ -167,9 +167,8 @@ def _reflect(
 ) -> dict[str, Slot]:
     slots = {name: _declared_slot(name, decl) for name, decl in declared.items()}
     units = {SAMPLER: 0, IMAGE: 0}
-    for name, (kind, count, location, block) in _resources(
-        device, glo, c.UNIFORM, (c.PROP_TYPE, c.PROP_ARRAY_SIZE, c.PROP_LOCATION, c.PROP_BLOCK_INDEX)
-    ):
+    wanted = (c.PROP_TYPE, c.PROP_ARRAY_SIZE, c.PROP_LOCATION, c.PROP_BLOCK_INDEX)
+    for name, (kind, count, location, block) in _resources(device, glo, c.UNIFORM, wanted):
         if block != -1:
             continue
         base = name.removesuffix("[0]")

@@ -55,6 +55,7 @@ class Sampled:
         self,
         texture: AnyTexture | Mip | Layer,
         filter: str | None = None,
+        *,
         wrap: str | tuple[str, str] = "clamp",
         compare: bool = False,
         border: float = 0.0,

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from elemental.core.paths import glsl_root
+from elemental.gpu.formats import IMAGE_QUALIFIERS
 
 Define = int | float | bool | str
 _INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
@@ -139,7 +140,7 @@ def _glsl_value(value: Define) -> str:
     return str(int(value)) if isinstance(value, bool) else str(value)
 
 
-# Mesa: "0:12(5): error: …"; NVIDIA: "0(12) : error C1008: …"; Intel, AMD, glslang: "ERROR: 0:12: …".
+# Mesa "0:12(5): error: …", NVIDIA "0(12) : error C1008: …", Intel and AMD "ERROR: 0:12: …".
 _MESSAGES = (
     re.compile(r"^\s*\d+:(?P<line>\d+)\(\d+\):\s*(?P<rest>.*)$"),
     re.compile(r"^\s*\d+\((?P<line>\d+)\)\s*:\s*(?P<rest>.*)$"),
@@ -189,8 +190,6 @@ _BLOCK = re.compile(
 
 def declared_resources(text: str) -> dict[str, Declared]:
     """Samplers, images and blocks that GLSL ``text`` declares, by name, in any ``#if`` branch."""
-    from elemental.gpu.formats import IMAGE_QUALIFIERS
-
     plain = _COMMENT.sub(" ", text)
     found: dict[str, Declared] = {}
     for match in _OPAQUE.finditer(plain):

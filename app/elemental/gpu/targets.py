@@ -21,9 +21,7 @@ class Framebuffers:
         self._made: dict[_Key, int] = {}
         self._holders: dict[int, set[_Key]] = {}
 
-    def get(
-        self, color: Sequence[Attached], depth: Attached | None, size: tuple[int, int]
-    ) -> int:
+    def get(self, color: Sequence[Attached], depth: Attached | None, size: tuple[int, int]) -> int:
         """GL name of the framebuffer; ``size`` counts where nothing is attached.
 
         Raises RuntimeError for a combination that the driver can't render to.
