@@ -12,10 +12,10 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from . import __version__
-from .frame import Renderer
-from .gpu.device import Device
-from .report import (
+from elemental import __version__
+from elemental.frame import Renderer
+from elemental.gpu.device import Device
+from elemental.report import (
     BytesEntry,
     DriverEntry,
     SceneEntry,
@@ -27,8 +27,8 @@ from .report import (
     settings_entry,
     write_json,
 )
-from .scene.model import Camera
-from .session import Viewpoint, check_output, set_stage
+from elemental.scene.model import Camera
+from elemental.session import Viewpoint, check_output, headless_device, set_stage
 
 SCHEMA = "elemental.bench/1"
 
@@ -124,7 +124,7 @@ def measure(renderer: Renderer, device: Device, camera: Camera, bench: Bench) ->
         issued = time.perf_counter()
         device.ctx.finish()
         done = time.perf_counter()
-        device.flush_reads()
+        device.finish()
         if index >= bench.warmup:
             samples.frame_cpu.append(1e3 * (issued - began))
             samples.frame_wall.append(1e3 * (done - began))
@@ -144,12 +144,11 @@ def bench(words: Bench) -> None:
     if words.json is not None:
         check_output("--json", words.json, (".json",))
     stage = set_stage(words.scene, words.assignments, Viewpoint(), words.size)
-    device = Device.headless()
+    device = headless_device()
     renderer = Renderer(device, stage.scene, stage.settings, words.size)
     samples = measure(renderer, device, stage.camera, words)
     frame = renderer.render(stage.camera, 0.0, words.warmup + words.frames)
-    device.ctx.finish()
-    device.flush_reads()
+    device.finish()
     counters = {name: int(count) for name, count in frame.counters.items()}
     report: BenchReport = {
         "schema": SCHEMA,

@@ -13,8 +13,8 @@ from collections.abc import Sequence
 from dataclasses import fields
 from typing import TypeVar
 
-from .core.errors import InputError
-from .flags import parse
+from elemental.core.errors import InputError
+from elemental.flags import parse
 
 T = TypeVar("T")
 
@@ -32,8 +32,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stdout.flush()
     except InputError as error:
         return _refuse(str(error))
-    except MemoryError:
-        return _refuse("out of memory")
+    except MemoryError as error:
+        return _refuse(f"out of memory: {error}" if str(error) else "out of memory")
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except KeyboardInterrupt:
@@ -54,25 +54,25 @@ def _filled(kind: type[T], options: argparse.Namespace) -> T:
 
 
 def _shot(options: argparse.Namespace) -> None:
-    from .shot import Shot, shoot  # noqa: PLC0415
+    from elemental.shot import Shot, shoot  # noqa: PLC0415
 
     shoot(_filled(Shot, options))
 
 
 def _run(options: argparse.Namespace) -> None:
-    from .ui.app import Run, run  # noqa: PLC0415
+    from elemental.ui.app import Run, run  # noqa: PLC0415
 
     run(_filled(Run, options))
 
 
 def _bench(options: argparse.Namespace) -> None:
-    from .bench import Bench, bench  # noqa: PLC0415
+    from elemental.bench import Bench, bench  # noqa: PLC0415
 
     bench(_filled(Bench, options))
 
 
 def _list(options: argparse.Namespace) -> None:
-    from .listing import lines  # noqa: PLC0415
+    from elemental.listing import lines  # noqa: PLC0415
 
     if options.what == "cameras" and options.scene is None:
         raise InputError("list cameras", "SCENE", "name a scene")

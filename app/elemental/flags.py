@@ -5,12 +5,12 @@ from __future__ import annotations
 import argparse
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NoReturn
 
-from . import __version__
-from .core.errors import InputError
+from elemental import __version__
+from elemental.core.errors import InputError
 
 MAX_SIDE_PX = 16384
 """Largest image side; the texture limit of common drivers."""
@@ -38,12 +38,12 @@ class _Parser(argparse.ArgumentParser):
         self.add_argument(name, metavar=metavar, type=kind, default=default, help=text)
 
 
-def parse(words: list[str], commands: dict[str, Command]) -> argparse.Namespace:
+def parse(words: list[str], commands: Mapping[str, Command]) -> argparse.Namespace:
     """The options of one command line, ``command`` among them. Raises InputError."""
     return build_parser(commands).parse_args(_join_vectors(words))
 
 
-def build_parser(commands: dict[str, Command]) -> argparse.ArgumentParser:
+def build_parser(commands: Mapping[str, Command]) -> argparse.ArgumentParser:
     """The parser of all commands; ``commands`` maps each command's name to what it calls."""
     parser = _Parser(
         prog="elemental", description="A renderer lit by voxel cone tracing in a sparse octree."

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from .core.paths import content_root
-from .settings import SETTINGS
+from elemental.core.paths import content_root
+from elemental.settings import SETTINGS
 
 
 def lines(what: str, scene: str | None = None) -> list[str]:
@@ -42,19 +42,19 @@ def _scenes() -> list[str]:
 
 
 def _views() -> list[str]:
-    from .frame import VIEWS  # noqa: PLC0415 (pulls in the whole renderer)
+    from elemental.frame import VIEWS  # noqa: PLC0415 (pulls in the whole renderer)
 
     return _columns(list(VIEWS.items()))
 
 
 def _bindings() -> list[str]:
-    from .ui.bindings import BINDINGS  # noqa: PLC0415 (only this list needs it)
+    from elemental.ui.bindings import BINDINGS  # noqa: PLC0415 (only this list needs it)
 
     return _columns([(b.keys_text(), b.help) for b in BINDINGS])
 
 
 def _cameras(scene: str) -> list[str]:
-    from .session import open_scene  # noqa: PLC0415 (only this list opens a scene)
+    from elemental.session import open_scene  # noqa: PLC0415 (only this list opens a scene)
 
     opened, _ = open_scene(scene, ())
     return [camera.name for camera in opened.cameras]

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .core.images import write_exr, write_png
+from elemental.core.images import write_exr, write_png
 
 SUFFIXES = (".png", ".exr")
 
@@ -49,7 +49,8 @@ def decode_srgb(display: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
 def _unit(rgb: npt.NDArray[Any]) -> npt.NDArray[np.float32]:
     """Values in [0, 1] as float32; a texel that is not a number is black."""
     scale = np.float32(1 / 255 if rgb.dtype == np.uint8 else 1)
-    return np.clip(np.nan_to_num(rgb.astype(np.float32) * scale, posinf=1.0), 0.0, 1.0)
+    unit: npt.NDArray[np.float32] = np.nan_to_num(rgb.astype(np.float32) * scale, posinf=1.0)
+    return np.clip(unit, 0.0, 1.0)
 
 
 def _bytes(unit: npt.NDArray[np.float32]) -> npt.NDArray[np.uint8]:

@@ -12,11 +12,11 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypedDict
 
-from .core.errors import InputError
-from .core.images import atomic_file
-from .gpu.device import Device
-from .scene.model import Scene
-from .settings import Settings
+from elemental.core.errors import InputError
+from elemental.core.images import atomic_file
+from elemental.gpu.device import Device
+from elemental.scene.model import Scene
+from elemental.settings import Settings
 
 SCHEMA = "elemental.report/1"
 
@@ -113,10 +113,16 @@ def scene_entry(scene: Scene) -> SceneEntry:
 
 def bytes_entry(device: Device) -> BytesEntry:
     """Bytes by category; a category that the schema does not know counts as ``other``."""
-    counted = dict(device.bytes())
-    named = {name: counted.pop(name, 0) for name in ("targets", "octree", "meshes", "textures")}
-    rest = sum(counted.values())
-    return BytesEntry(**named, other=rest, total=sum(named.values()) + rest)
+    counted = device.bytes()
+    entry: BytesEntry = {
+        "targets": counted.pop("targets", 0),
+        "octree": counted.pop("octree", 0),
+        "meshes": counted.pop("meshes", 0),
+        "textures": counted.pop("textures", 0),
+        "other": sum(counted.values()),
+        "total": sum(device.bytes().values()),
+    }
+    return entry
 
 
 def settings_entry(settings: Settings) -> dict[str, Any]:

@@ -15,12 +15,13 @@ from pathlib import Path
 
 import numpy as np
 
-from .core import transforms
-from .core.errors import InputError
-from .core.images import read_environment
-from .scene.load import load_scene
-from .scene.model import Camera, Environment, Scene
-from .settings import Settings
+from elemental.core import transforms
+from elemental.core.errors import InputError
+from elemental.core.images import read_environment
+from elemental.gpu.device import Device
+from elemental.scene.load import load_scene
+from elemental.scene.model import Camera, Environment, Scene
+from elemental.settings import Settings
 
 DEFAULT_SCENE = "atrium"
 
@@ -72,6 +73,14 @@ def set_stage(
     """``open_scene`` and ``choose_camera`` for a picture of ``size`` pixels."""
     scene, settings = open_scene(name, assignments)
     return Stage(scene, settings, choose_camera(scene, viewpoint, size[0] / size[1]))
+
+
+def headless_device() -> Device:
+    """A device without a window. Raises InputError where the machine has no OpenGL 4.3."""
+    try:
+        return Device.headless()
+    except RuntimeError as error:
+        raise InputError("", "", str(error)) from error
 
 
 def choose_camera(scene: Scene, viewpoint: Viewpoint, aspect: float) -> Camera:

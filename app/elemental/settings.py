@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Literal
 
-from .core.errors import InputError
+from elemental.core.errors import InputError
 
 Kind = Literal["bool", "int", "float", "choice", "color", "text"]
 

@@ -6,11 +6,11 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from . import __version__
-from .frame import VIEWS, Frame, Renderer
-from .gpu.device import Device
-from .picture import SUFFIXES, save_picture
-from .report import (
+from elemental import __version__
+from elemental.frame import VIEWS, Frame, Renderer
+from elemental.gpu.device import Device
+from elemental.picture import SUFFIXES, save_picture
+from elemental.report import (
     SCHEMA,
     PassEntry,
     Report,
@@ -22,13 +22,14 @@ from .report import (
     settings_entry,
     write_json,
 )
-from .session import (
+from elemental.session import (
     FRAME_NUMBER,
     Point,
     Stage,
     Viewpoint,
     check_output,
     frame_file,
+    headless_device,
     known_name,
     set_stage,
 )
@@ -66,13 +67,13 @@ def shoot(shot: Shot) -> None:
     known_name("--view", shot.view, list(VIEWS))
     viewpoint = Viewpoint(shot.camera, shot.eye, shot.target, shot.fov)
     stage = set_stage(shot.scene, shot.assignments, viewpoint, shot.size)
-    device = Device.headless()
+    device = headless_device()
     renderer = Renderer(device, stage.scene, stage.settings, shot.size)
     is_sequence = FRAME_NUMBER.search(shot.output.name) is not None
     for index in range(shot.frames):
         began = time.perf_counter()
         frame = renderer.render(stage.camera, shot.time + index / shot.fps, index, shot.view)
-        device.ctx.finish()
+        device.finish()
         wall_ms = 1e3 * (time.perf_counter() - began)
         if is_sequence or index == shot.frames - 1:
             file = frame_file(shot.output, index)
@@ -85,7 +86,6 @@ def shoot(shot: Shot) -> None:
 
 
 def _report(shot: Shot, stage: Stage, device: Device, frame: Frame, wall_ms: float) -> Report:
-    device.flush_reads()
     passes = [PassEntry(name=t.name, gpu_ms=t.gpu_ms, cpu_ms=t.cpu_ms) for t in device.timings]
     counters = {name: int(count) for name, count in frame.counters.items()}
     return {

@@ -8,18 +8,18 @@ from pathlib import Path
 
 import numpy as np
 
-from ..core.errors import InputError
-from ..frame import VIEWS, Frame, Renderer
-from ..gpu.device import Device
-from ..picture import save_picture
-from ..session import Stage, Viewpoint, set_stage
-from .averages import Averages
-from .clock import SceneClock
-from .fly_camera import FAST_FACTOR, FlyCamera
-from .gui import Gui
-from .hud import Figures, draw_help, draw_hud, draw_message
-from .present import Presenter
-from .window import Events, GlfwLoader, Window
+from elemental.core.errors import InputError
+from elemental.frame import VIEWS, Frame, Renderer
+from elemental.gpu.device import Device
+from elemental.picture import save_picture
+from elemental.session import Stage, Viewpoint, set_stage
+from elemental.ui.averages import Averages
+from elemental.ui.clock import SceneClock
+from elemental.ui.fly_camera import FAST_FACTOR, FlyCamera
+from elemental.ui.gui import Gui
+from elemental.ui.hud import Figures, draw_help, draw_hud, draw_message
+from elemental.ui.present import present
+from elemental.ui.window import Events, Window
 
 MESSAGE_S = 4.0
 """How long a message stays."""
@@ -57,10 +57,9 @@ class App:
 
     def __init__(self, window: Window, stage: Stage, words: Run) -> None:
         self.window, self.stage, self.words = window, stage, words
-        self.device = Device.from_window(GlfwLoader())
+        self.device = Device.from_window(window.get_proc_address)
         self.gui = Gui(window)
         self.renderer = Renderer(self.device, stage.scene, stage.settings, words.size)
-        self.presenter = Presenter(self.device)
         self.fly = FlyCamera.at(stage.camera, _diagonal(stage))
         self.clock = SceneClock()
         self.averages = Averages()
@@ -69,6 +68,7 @@ class App:
         self.drawn = 0
         self.shows_hud, self.shows_help = True, False
         self.frame: Frame | None = None
+        self.problems: list[str] = []
         self._frame_s = self._cpu_ms = 0.0
         self._message, self._message_until = "", 0.0
 
@@ -88,12 +88,12 @@ class App:
 
     def draw(self, size: tuple[int, int]) -> None:
         """Render one frame of ``size`` pixels and show it under the panels."""
-        self.device.reload_shaders()
+        self._reload_shaders()
         began = time.perf_counter()
         self.renderer.resize(size)
         camera = self.fly.camera()
         self.frame = self.renderer.render(camera, self.clock.time_s, self.drawn, self.view)
-        self.presenter.show(self.frame, size)
+        present(self.device, self.frame, size)
         self._cpu_ms = 1e3 * (time.perf_counter() - began)
         timings = [(timing.name, timing.gpu_ms) for timing in self.device.timings]
         self.averages.update([("frame", 1e3 * self._frame_s), *timings], self._frame_s)
@@ -149,10 +149,14 @@ class App:
     def release(self) -> None:
         """Free everything, the window last."""
         self.gui.release()
-        self.presenter.release()
         self.renderer.release()
         self.device.release()
         self.window.release()
+
+    def _reload_shaders(self) -> None:
+        """Take over edited shaders; what does not compile is told and its old program kept."""
+        self.device.reload_changed_shaders()
+        self.problems = self.device.library.problems()
 
     def _fly(self) -> None:
         held = self.window.held
@@ -224,7 +228,7 @@ class App:
             time_s=self.clock.time_s,
             paused=self.clock.paused,
             speed=self.fly.speed,
-            problems=self.device.problems(),
+            problems=self.problems,
         )
 
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from ..core import transforms
-from ..scene.model import Camera
+from elemental.core import transforms
+from elemental.scene.model import Camera
 
 LOOK_RAD_PER_PX = math.radians(0.15)
 """Turn for a mouse way of one pixel: half a turn for 1,200 pixels."""

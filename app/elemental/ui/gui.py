@@ -10,7 +10,7 @@ from imgui_bundle import imgui  # isort: skip
 from imgui_bundle.imgui import backends  # isort: skip
 import glfw
 
-from .window import Window
+from elemental.ui.window import Window
 
 FONT_PX = 15.0
 """Height of the text on a display without scaling."""

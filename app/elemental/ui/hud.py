@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from imgui_bundle import imgui
 
-from .bindings import BINDINGS
+from elemental.ui.bindings import BINDINGS
 
 RED = imgui.ImVec4(1.0, 0.3, 0.25, 1.0)
 GREY = imgui.ImVec4(0.7, 0.7, 0.7, 1.0)

@@ -10,33 +10,12 @@ from typing import Any
 
 import glfw
 
-from ..core.errors import InputError
-from .bindings import BINDINGS
+from elemental.core.errors import InputError
+from elemental.ui.bindings import BINDINGS
 
 glfw.ERROR_REPORTING = "ignore"  # errors are asked for where they matter, and told in one line
 
 DRAG_BUTTONS = (glfw.MOUSE_BUTTON_LEFT, glfw.MOUSE_BUTTON_RIGHT)
-
-
-class GlfwLoader:
-    """What a GL loader needs to be for ``moderngl.create_context`` and ``gpu/gl.py``."""
-
-    def load_opengl_function(self, name: str) -> int:
-        """The address of a GL function in the current context; 0 if there is none."""
-        return ctypes.cast(glfw.get_proc_address(name), ctypes.c_void_p).value or 0
-
-    def load(self, name: str) -> int:
-        """moderngl's name for the same."""
-        return self.load_opengl_function(name)
-
-    def __enter__(self) -> GlfwLoader:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        """The context stays current."""
-
-    def release(self) -> None:
-        """The window owns the context."""
 
 
 @dataclass
@@ -89,6 +68,10 @@ class Window:
     def address(self) -> int:
         """The GLFWwindow's address, for ImGui's backend."""
         return ctypes.cast(self.handle, ctypes.c_void_p).value or 0
+
+    def get_proc_address(self, name: str) -> int:
+        """The address of a GL function in the window's context; 0 if there is none."""
+        return ctypes.cast(glfw.get_proc_address(name), ctypes.c_void_p).value or 0
 
     def framebuffer_size(self) -> tuple[int, int]:
         """Pixels to draw, (0, 0) while minimised."""
