@@ -5,22 +5,22 @@
 #include "lib/morton.glsl"
 
 struct NodeLocation {
-  uint node;    // index into nodes
-  uvec3 cell;   // the node's coordinates at `level`
-  vec3 local;   // position inside it, 0..1
-  int level;    // the level that was reached: the wanted one, or the deepest above it
+    uint node;    // index into nodes
+    uvec3 cell;   // the node's coordinates at `level`
+    vec3 local;   // position inside it, 0..1
+    int level;    // the level that was reached: the wanted one, or the deepest above it
 };
 
 // Levels up to the top level are dense: node index = grid start + Morton code.
 uint dense_node(int level, uvec3 cell) {
-  return ((1u << (3 * level)) - 1u) / 7u + morton_encode(cell);
+    return ((1u << (3 * level)) - 1u) / 7u + morton_encode(cell);
 }
 
-uint first_tile_node() { return ((1u << (3 * (octree.levels.y + 1))) - 1u) / 7u; }
+uint first_tile_node() { return ((1u << (3 * (u_octree.top_level + 1))) - 1u) / 7u; }
 
 uint child_node(uint tile_plus_one, uvec3 child_cell) {
-  uvec3 odd = child_cell & 1u;
-  return first_tile_node() + (tile_plus_one - 1u) * 8u + (odd.x | (odd.y << 1) | (odd.z << 2));
+    uvec3 odd = child_cell & 1u;
+    return first_tile_node() + (tile_plus_one - 1u) * 8u + (odd.x | (odd.y << 1) | (odd.z << 2));
 }
 
 bool node_has_brick(Node node) { return (node.brick & NODE_BRICK_MASK) != 0u; }
@@ -30,38 +30,38 @@ float node_scale(Node node) { return exp2(float(int(node.brick >> NODE_SCALE_SHI
 
 // Descends from the dense levels towards the node `cell` of `level`; `reached` is where it ended.
 uint find_node(uvec3 cell, int level, out int reached) {
-  reached = min(level, octree.levels.y);
-  uint index = dense_node(reached, cell >> uint(level - reached));
-  while (reached < level) {
-    uint tile = node_child(nodes[index]);
-    if (tile == 0u) break;
-    ++reached;
-    index = child_node(tile, cell >> uint(level - reached));
-  }
-  return index;
+    reached = min(level, u_octree.top_level);
+    uint index = dense_node(reached, cell >> uint(level - reached));
+    while (reached < level) {
+        uint tile = node_child(nodes[index]);
+        if (tile == 0u) break;
+        ++reached;
+        index = child_node(tile, cell >> uint(level - reached));
+    }
+    return index;
 }
 
 // Unit position in the octree's cube.
-vec3 octree_from_world(vec3 p_ws) { return (p_ws - octree.origin_size.xyz) / octree.origin_size.w; }
+vec3 octree_from_world(vec3 p_ws) { return (p_ws - u_octree.origin_size.xyz) / u_octree.origin_size.w; }
 
 bool inside_octree(vec3 p_oct) {
-  return all(greaterThanEqual(p_oct, vec3(0.0))) && all(lessThan(p_oct, vec3(1.0)));
+    return all(greaterThanEqual(p_oct, vec3(0.0))) && all(lessThan(p_oct, vec3(1.0)));
 }
 
 // World position and wanted level -> node, local position, level reached. p_ws inside the cube.
 NodeLocation octree_locate(vec3 p_ws, int wanted_level) {
-  vec3 p_oct = octree_from_world(p_ws);
-  NodeLocation at;
-  uint side = 1u << wanted_level;
-  uvec3 cell = min(uvec3(max(p_oct, 0.0) * float(side)), uvec3(side - 1u));
-  at.node = find_node(cell, wanted_level, at.level);
-  at.cell = cell >> uint(wanted_level - at.level);
-  at.local = p_oct * float(1u << at.level) - vec3(at.cell);
-  return at;
+    vec3 p_oct = octree_from_world(p_ws);
+    NodeLocation at;
+    uint side = 1u << wanted_level;
+    uvec3 cell = min(uvec3(max(p_oct, 0.0) * float(side)), uvec3(side - 1u));
+    at.node = find_node(cell, wanted_level, at.level);
+    at.cell = cell >> uint(wanted_level - at.level);
+    at.local = p_oct * float(1u << at.level) - vec3(at.cell);
+    return at;
 }
 
 // The way back: local position in a node's cell -> world position.
 vec3 octree_position(uvec3 cell, int level, vec3 local) {
-  vec3 p_oct = (vec3(cell) + local) / float(1u << level);
-  return octree.origin_size.xyz + p_oct * octree.origin_size.w;
+    vec3 p_oct = (vec3(cell) + local) / float(1u << level);
+    return u_octree.origin_size.xyz + p_oct * u_octree.origin_size.w;
 }

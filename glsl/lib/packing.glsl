@@ -74,3 +74,12 @@ vec3 octahedral_decode(vec2 p) {
     if (d.z < 0.0) d.xy = (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0);
     return normalize(d);
 }
+
+// Solid angle of a patch of the octahedral square, up to a constant: the octahedron's face turns
+// away and recedes, |q|^-3 for q on |x| + |y| + |z| = 1.
+float octahedral_weight(vec2 p) {
+    vec3 q = vec3(p, 1.0 - abs(p.x) - abs(p.y));
+    if (q.z < 0.0) q.xy = 1.0 - abs(p.yx);
+    float squared = dot(q, q);
+    return inversesqrt(squared) / squared;
+}

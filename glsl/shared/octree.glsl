@@ -6,6 +6,7 @@
 
 const int OCTREE_MAX_LEVELS = 10;      // levels 0..9: at most 1024 lattice points a side
 const uint NODE_BRICK_MASK = 0x00ffffffu; // low 24 bits of Node.brick: brick index + 1, 0 = empty
+const uint BRICK_LEAF = 0x80000000u;
 const uint NODE_SCALE_SHIFT = 24u;     // high 8 bits: the brick's HDR multiplier is 2^(code - 128)
 const int NODE_SCALE_BIAS = 128;
 const uint BRICK_VOXELS = 8u;          // 2x2x2
@@ -20,58 +21,74 @@ const uint REGION_SIDE = 8u;           // the cube is split into 8^3 regions, ea
 // A node is two words. child: index of the tile of eight children + 1, 0 = none.
 // brick: see NODE_BRICK_MASK; where it is 0, `child` holds the level of the largest empty ancestor.
 struct Node {
-  uint child;
-  uint brick;
+    uint child;
+    uint brick;
 };
 
 // One rasterized sample of a surface. position: 10:10:10 lattice coordinates at the finest level;
 // albedo: RGBA8, a = opacity; normal: snorm8 xyz; emissive: RGB9E5 radiance.
 struct VoxelFragment {
-  uint position;
-  uint albedo;
-  uint normal;
-  uint emissive;
+    uint position;
+    uint albedo;
+    uint normal;
+    uint emissive;
 };
 
 // Averages over a voxel's fragments, 16 bytes: GI-03's "material attributes, normal".
 // The normal keeps its length: short means that the fragments disagree.
 struct VoxelAttributes {
-  uint albedo;
-  uint normal;
-  uint emissive;
-  uint fragments;
+    uint albedo;
+    uint normal;
+    uint emissive;
+    uint fragments;
+};
+
+// Where a brick belongs. cell: 9:9:9 node coordinates, 4 bits of level, top bit: a leaf.
+struct Brick {
+    uint cell;
+    uint node;
 };
 
 struct DispatchArgs {
-  uint x;
-  uint y;
-  uint z;
-  uint threads;
+    uint x;
+    uint y;
+    uint z;
+    uint threads;
 };
 
 // What the GPU alone counts and decides; the CPU reads a copy frames later for the HUD and reports.
 struct OctreeState {
-  uint fragment_count;               // asked for; beyond the capacity they are dropped
-  uint fragment_dropped;
-  uint tile_count;
-  uint tile_dropped;
-  uint brick_count;
-  uint brick_dropped;
-  uint leaf_first;                   // first brick of the finest level
-  uint reserved;
-  DispatchArgs fragments;
-  DispatchArgs bricks;               // a thread a brick
-  DispatchArgs leaf_voxels;          // a thread a voxel, over bricks of every level that may hold leaves
-  DispatchArgs level_bricks[10];     // a thread a brick of this level
-  DispatchArgs level_voxels[10];     // a thread a voxel of this level
-  uint level_first[12];              // first brick of each level; [levels] = brick_count
+    uint fragment_count;               // asked for; beyond the capacity they are dropped
+    uint fragment_dropped;
+    uint tile_count;
+    uint tile_dropped;
+    uint brick_count;
+    uint brick_dropped;
+    uint leaf_count;                   // bricks of the levels that may hold leaves
+    uint interior_count;               // bricks above the finest level
+    DispatchArgs fragments;
+    DispatchArgs bricks;               // a thread a brick
+    DispatchArgs leaf_voxels;          // a thread a voxel, over bricks of the levels that may hold leaves
+    DispatchArgs level_bricks[10];     // a thread a brick of this level
+    DispatchArgs level_voxels[10];     // a thread a voxel of this level
+    uint level_first[12];              // first brick of each level; [levels] = brick_count
 };
 
 layout(std140) uniform Octree {
-  vec4 origin_size;      // xyz: world position of lattice point 0; w: side of the cube in metres
-  ivec4 levels;          // x: finest leaf level; y: top level (levels up to it are dense); z: lattice points a side; w: first leaf level of any region
-  uvec4 capacity;        // fragments, tiles, bricks, interior bricks
-  uvec4 atlas;           // bricks a row, rows, layers of the atlas; w: number of 64-node blocks
-  vec4 atlas_texel;      // xyz: 1 / atlas size in texels; w: metres between points of the finest lattice
-  vec4 emissive_scale;   // x: fixed-point units a unit of radiance in the accumulators; y: its inverse
-} octree;
+    vec4 origin_size;    // xyz: world position of lattice point 0; w: side of the cube, m
+    int leaf_level;      // the finest
+    int top_level;       // levels up to it are dense arrays
+    int coarsest_leaf;   // the coarsest leaf level that a region asks for
+    int resolution;      // lattice points a side at the finest level
+    float voxel_m;       // metres between points of the finest lattice
+    float fixed_point;   // accumulator units a unit of emitted radiance
+    uint block_count;    // 64-node blocks of all levels
+    uint atlas_side_log2; // bricks a row and rows a layer of the atlas, as a power of two
+    uint fragment_capacity;
+    uint tile_capacity;
+    uint brick_capacity;
+    uint leaf_capacity;      // bricks that can hold leaf attributes
+    uint interior_capacity;  // bricks that can hold filtered HDR values
+    vec3 atlas_texel;    // 1 / atlas size in texels
+    vec3 ambient;        // radiance that every voxel receives besides
+} u_octree;

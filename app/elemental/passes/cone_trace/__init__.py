@@ -1,0 +1,1 @@
+"""Indirect light: cones from the G-buffer through the octree. [Mittring12], [Crassin11]"""

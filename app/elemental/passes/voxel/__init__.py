@@ -1,0 +1,1 @@
+"""The sparse voxel octree: voxelized, built, lit and filtered on the GPU. [Mittring12]"""

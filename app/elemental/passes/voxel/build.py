@@ -1,0 +1,142 @@
+"""From the fragment queue to nodes, bricks and averaged attributes. [Mittring12 "Voxel Lighting
+Pipeline": update octree data structures in parallel, stores voxel data in leaves]
+
+Every node and brick gets its place by its rank in Morton order, from prefix sums over existence
+bits, so that a build does not depend on the order in which threads ran.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from elemental.core.layout import Block, layouts, pack
+from elemental.gpu.graph import Graph
+from elemental.gpu.refs import AnyBuffer
+from elemental.gpu.shaders import Compute
+from elemental.passes.voxel.grid import grid_block_count
+from elemental.passes.voxel.octree import Octree, Survey
+
+MARK = Compute("voxel/mark.comp.glsl")
+REDUCE = Compute("voxel/reduce.comp.glsl")
+SCAN_BLOCKS = Compute("voxel/scan_blocks.comp.glsl")
+SCAN_GROUPS = Compute("voxel/scan_groups.comp.glsl")
+NODES = Compute("voxel/nodes.comp.glsl")
+ACCUMULATE = Compute("voxel/accumulate.comp.glsl")
+RESOLVE = Compute("voxel/resolve.comp.glsl")
+
+BLOCK_BYTES = 8
+SUM_BYTES_A_BRICK = 8 * 16
+"""Four 32-bit sums for each of eight voxels."""
+
+
+@cache
+def level_params(level: int) -> Block:
+    """The OctreeLevel block."""
+    return pack(layouts().block("OctreeLevel"), level=level)
+
+
+@cache
+def state_offset(field: str, element: int = 0) -> int:
+    """Byte offset of a DispatchArgs in OctreeState, for indirect dispatch."""
+    layout = layouts().struct("OctreeState")
+    dtype, offset = layout.fields[field][:2]  # type: ignore[index]
+    stride = dtype.base.itemsize if isinstance(dtype, np.dtype) else 0
+    return int(offset) + element * int(stride)
+
+
+def find_nodes(
+    g: Graph, octree: Survey, fragments: AnyBuffer
+) -> tuple[AnyBuffer, AnyBuffer, AnyBuffer]:
+    """Which nodes exist, and their ranks. Leaves the totals and dispatch arguments in the state.
+
+    Returns (existence bits, ranks inside groups of blocks, ranks of the groups).
+    """
+    grid = octree.grid
+    points = g.buffer("voxel.points", grid.point_block_count * BLOCK_BYTES)
+    node_bits = g.buffer("voxel.node_bits", grid.block_count * BLOCK_BYTES)
+    g.clear_buffer(points)
+    g.clear_buffer(node_bits)
+    g.compute(
+        MARK,
+        reads={"State": octree.state, "Fragments": fragments, "Regions": octree.regions},
+        writes={"Points": points},
+        params=octree.params,
+        indirect=(octree.state, state_offset("fragments")),
+    )
+    for level in range(grid.leaf_level, -1, -1):
+        g.compute(
+            REDUCE,
+            f"reduce.{level}",
+            reads={"Regions": octree.regions},
+            writes={"Points": points, "NodeBits": node_bits},
+            params={"OctreeLevel": level_params(level)},
+            threads=grid_block_count(level + 1),
+        )
+    group_blocks = int(layouts().constant("SCAN_BLOCKS"))
+    groups = -(-grid.block_count // group_blocks)
+    ranks = g.buffer("voxel.ranks", grid.block_count * BLOCK_BYTES)
+    sums = g.buffer("voxel.group_sums", groups * BLOCK_BYTES)
+    g.compute(
+        SCAN_BLOCKS,
+        reads={"NodeBits": node_bits},
+        writes={"Ranks": ranks, "GroupSums": sums},
+        params=octree.params,
+        groups=groups,
+    )
+    g.compute(
+        SCAN_GROUPS,
+        reads={"Ranks": ranks},
+        writes={"GroupSums": sums, "State": octree.state},
+        params=octree.params,
+        groups=1,
+    )
+    return node_bits, ranks, sums
+
+
+def build(g: Graph, octree: Octree, fragments: AnyBuffer) -> None:
+    """Nodes, bricks and leaf attributes from the fragments."""
+    node_bits, ranks, sums = find_nodes(g, octree, fragments)
+    g.compute(
+        NODES,
+        reads={"NodeBits": node_bits, "Ranks": ranks, "GroupSums": sums, "State": octree.state},
+        writes={"Nodes": octree.nodes, "Bricks": octree.bricks},
+        params=octree.params,
+        threads=octree.grid.block_count,
+    )
+    average(g, octree, fragments)
+
+
+def average(g: Graph, octree: Octree, fragments: AnyBuffer) -> None:
+    """Leaf attributes: the averages of each voxel's fragments, summed in integers."""
+    nbytes = octree.capacity.leaves * SUM_BYTES_A_BRICK
+    colors = g.buffer("voxel.color_sums", nbytes)
+    normals = g.buffer("voxel.normal_sums", nbytes)
+    emissive = g.buffer("voxel.emissive_sums", nbytes if octree.max_emission > 0.0 else 16)
+    for sums in (colors, normals, emissive):
+        g.clear_buffer(sums)
+    g.compute(
+        ACCUMULATE,
+        reads={
+            "State": octree.state,
+            "Fragments": fragments,
+            "Nodes": octree.nodes,
+            "Regions": octree.regions,
+        },
+        writes={"ColorSums": colors, "NormalSums": normals, "EmissiveSums": emissive},
+        params=octree.params,
+        indirect=(octree.state, state_offset("fragments")),
+    )
+    g.compute(
+        RESOLVE,
+        reads={
+            "State": octree.state,
+            "ColorSums": colors,
+            "NormalSums": normals,
+            "EmissiveSums": emissive,
+        },
+        writes={"Attributes": octree.attributes},
+        params=octree.params,
+        indirect=(octree.state, state_offset("leaf_voxels")),
+    )

@@ -1,0 +1,73 @@
+"""Voxel radiance and its directional mip-maps. [Mittring12 "Voxel Lighting Pipeline"]"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from elemental.gpu.graph import Graph
+from elemental.gpu.shaders import Compute
+from elemental.passes.voxel.build import level_params, state_offset
+from elemental.passes.voxel.octree import Octree
+
+if TYPE_CHECKING:
+    from elemental.passes.shadow import ShadowMaps
+    from elemental.passes.sky import Sky
+
+LIGHT = Compute("voxel/light.comp.glsl")
+LIGHT_AND_GATHER = Compute("voxel/light.comp.glsl", defines={"GATHER": 1})
+FILTER = Compute("voxel/filter.comp.glsl")
+COMPRESS = Compute("voxel/compress.comp.glsl")
+
+
+def light_voxels(g: Graph, octree: Octree, shadows: ShadowMaps, sky: Sky, gather: bool) -> None:
+    """Radiance of every leaf voxel: emission and direct light through the shadow maps.
+
+    ``gather``: also what arrives by cones through the octree's present radiance, one more bounce.
+    """
+    reads = {
+        "State": octree.state,
+        "Bricks": octree.bricks,
+        "Attributes": octree.attributes,
+        **shadows.reads(),
+    }
+    params = {**octree.params, **shadows.params()}
+    if gather:
+        reads |= {**octree.tracing_reads(), **sky.reads()}
+        params |= sky.params()
+    g.compute(
+        LIGHT_AND_GATHER if gather else LIGHT,
+        "light voxels",
+        reads=reads,
+        writes={"Radiance": octree.radiance},
+        params=params,
+        indirect=(octree.state, state_offset("leaf_voxels")),
+    )
+
+
+def filter_levels(g: Graph, octree: Octree) -> None:
+    """Six-sided values of every level above the finest, from the finest up."""
+    for level in range(octree.grid.leaf_level - 1, -1, -1):
+        g.compute(
+            FILTER,
+            f"filter.{level}",
+            reads={**octree.voxel_reads(), "Nodes": octree.nodes},
+            writes={"Sided": octree.sided},
+            params={**octree.params, "OctreeLevel": level_params(level)},
+            indirect=(octree.state, state_offset("level_voxels", level)),
+        )
+
+
+def compress(g: Graph, octree: Octree) -> None:
+    """Every brick's texels with the redundant border, and its HDR multiplier."""
+    g.compute(
+        COMPRESS,
+        reads=octree.voxel_reads(),
+        writes={
+            "Sided": octree.sided,
+            "Nodes": octree.nodes,
+            "NodeWords": octree.nodes,
+            "u_atlas": octree.atlas,
+        },
+        params=octree.params,
+        indirect=(octree.state, state_offset("bricks")),
+    )

@@ -1,0 +1,100 @@
+"""Keeps the octree true to the scene and its light, doing only what a change asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from typing import TYPE_CHECKING
+
+from elemental.gpu.device import Device
+from elemental.gpu.graph import Graph
+from elemental.passes.scene_gpu import GpuScene
+from elemental.passes.voxel import sizing
+from elemental.passes.voxel.build import build
+from elemental.passes.voxel.grid import Grid
+from elemental.passes.voxel.light import compress, filter_levels, light_voxels
+from elemental.passes.voxel.octree import Capacity, Counts, Octree
+from elemental.passes.voxel.voxelize import voxelize
+
+if TYPE_CHECKING:
+    from elemental.passes.shadow import ShadowMaps
+    from elemental.passes.sky import Sky
+
+NOTHING = Counts(0, 0, 0, 0, 0, 0, 0, 0)
+
+
+class VoxelLighting:
+    """The octree of a scene with what it was built from and lit by.
+
+    ``area_m2``: `sizing.projected_area`; ``capacity``: None counts first and allocates to fit.
+    """
+
+    def __init__(
+        self,
+        device: Device,
+        scene: GpuScene,
+        grid: Grid,
+        area_m2: float,
+        max_emission: float,
+        budget_bytes: int,
+        capacity: Capacity | None = None,
+    ) -> None:
+        self.device = device
+        self.scene = scene
+        self.budget_bytes = budget_bytes
+        if capacity is None:
+            capacity = sizing.capacity_for(
+                sizing.count(device, scene, grid, area_m2), budget_bytes
+            )
+        self.octree = Octree(device, grid, capacity, max_emission)
+        self.counts = NOTHING
+        self._built_version: int | None = None
+        self._lit_by: Hashable = None
+
+    def invalidate(self, what: str) -> None:
+        """Make the next update rebuild the "geometry", or only relight: "light"."""
+        self._lit_by = None
+        if what == "geometry":
+            self._built_version = None
+
+    def update(
+        self, g: Graph, shadows: ShadowMaps, sky: Sky, light_key: Hashable, bounces: int
+    ) -> Octree:
+        """Add the passes that this frame needs: none where nothing changed.
+
+        ``light_key`` is equal as long as lights and sky are; ``bounces`` counts gathers: voxel
+        radiance holds light gathered ``bounces - 1`` times.
+        """
+        if self._built_version != self.scene.version:
+            self._grow()
+            build(g, self.octree, voxelize(g, self.scene, self.octree))
+            g.read_later(self.octree.state, self._counted)
+            self._built_version = self.scene.version
+            self._lit_by = None
+        key = (light_key, bounces)
+        if key != self._lit_by:
+            for bounce in range(max(bounces, 1)):
+                light_voxels(g, self.octree, shadows, sky, gather=bounce > 0)
+                filter_levels(g, self.octree)
+                compress(g, self.octree)
+            self._lit_by = key
+        return self.octree
+
+    def _counted(self, raw: bytes) -> None:
+        self.counts = Counts.from_state(raw)
+        if self.counts.overflowed and self._wanted() != self.octree.capacity:
+            self.invalidate("geometry")
+
+    def _wanted(self) -> Capacity:
+        return sizing.capacity_for(self.counts, self.budget_bytes)
+
+    def _grow(self) -> None:
+        """Larger pools where the last build had to drop something and the budget allows."""
+        if not self.counts.overflowed or self._wanted() == self.octree.capacity:
+            return
+        octree = self.octree
+        self.octree = Octree(self.device, octree.grid, self._wanted(), octree.max_emission)
+        octree.release()
+
+    def release(self) -> None:
+        """Free the octree."""
+        self.octree.release()

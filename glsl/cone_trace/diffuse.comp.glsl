@@ -1,0 +1,36 @@
+// Nine sub-images, one direction each, so that neighbouring threads walk the same way.
+// [Mittring12 "Diffuse Sampling 2/2"], [Segovia06]: non-interleaved processing of an interleaved
+// 3x3 pattern; loop over 9 directions, then XY; reject samples behind the surface normal.
+
+#include "lib/diffuse_cone.glsl"
+#include "lib/packing.glsl"
+#include "lib/view.glsl"
+#include "lib/interleave.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+uniform sampler2D u_depth;
+uniform sampler2D u_gbuffer_a;
+layout(rgba16f) writeonly uniform image2D o_radiance;
+
+void main() {
+    ivec2 size = ivec2(u_view.viewport_px.xy);
+    ivec2 part = sub_image_size(size);
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(at, part))) return;
+    int cone = int(gl_WorkGroupID.z);
+    ivec2 pixel = at * 3 + cone_offset(cone);
+    if (any(greaterThanEqual(pixel, size))) return;
+
+    vec4 result = vec4(0.0, 0.0, 0.0, REJECTED);
+    float depth = texelFetch(u_depth, pixel, 0).r;
+    if (depth < 1.0) {
+        vec3 normal = normal10_decode(texelFetch(u_gbuffer_a, pixel, 0).xyz);
+        vec3 direction = CONE_DIRECTIONS[cone];
+        if (dot(normal, direction) > 0.0) {
+            vec3 p_ws = position_ws_at((vec2(pixel) + 0.5) * u_view.viewport_px.zw, depth);
+            result = diffuse_cone(p_ws, normal, direction);
+        }
+    }
+    imageStore(o_radiance, at + part * cone_offset(cone), result);
+}

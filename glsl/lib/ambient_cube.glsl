@@ -1,0 +1,30 @@
+// Values on the six sides of a cube, weighted by direction. [McTaggart04]
+
+// Sides in the order of the brick's stacks: +x -x +y -y +z -z, named by their outward normal.
+// A ray that travels along -x looks at the +x side.
+vec3 side_normal(uint side) {
+    float direction = (side & 1u) == 0u ? 1.0 : -1.0;
+    return direction * vec3(side < 2u, side >= 2u && side < 4u, side >= 4u);
+}
+
+// Which three sides a ray along `direction` sees.
+uvec3 sides_seen(vec3 direction) {
+    return uvec3(0u, 2u, 4u) + uvec3(greaterThan(direction, vec3(0.0)));
+}
+
+// Squared components of a unit vector sum to one.
+vec3 side_weights(vec3 direction) { return direction * direction; }
+
+// Share of a leaf's radiance that a side shows. A surface with the normal n shows its radiance to
+// the half space in front of it; sides can only say that with error. The side seen edge-on
+// (cosine 0) gets SIDE_EDGE_ON: 1 is right for what the front sees of it, 0 for the back.
+// sqrt(3) makes all three front sides of a diagonal normal show it whole.
+const float SIDE_EDGE_ON = 0.5;
+
+float side_visibility(vec3 normal, float cosine) {
+    float slope = sqrt(3.0) * cosine;
+    float facing = clamp(slope > 0.0 ? mix(SIDE_EDGE_ON, 1.0, slope) : SIDE_EDGE_ON * (1.0 + slope), 0.0, 1.0);
+    // A short average normal means that the voxel's surfaces face several ways.
+    float certainty = min(dot(normal, normal) * 4.0, 1.0);
+    return mix(1.0, facing, certainty);
+}

@@ -1,0 +1,59 @@
+// Shades every leaf voxel and stores its radiance and opacity: gather, not scatter.
+// [Mittring12 "Voxel Lighting Pipeline": direct light with shadow maps, ambient colour, combine
+// with albedo, add emissive]
+
+#include "lib/packing.glsl"
+#include "lib/lights.glsl"
+#include "lib/shadow.glsl"
+#include "lib/voxel_gather.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(std430) readonly buffer State { OctreeState octree_state; };
+layout(std430) readonly buffer Bricks { Brick bricks[]; };
+layout(std430) readonly buffer Attributes { VoxelAttributes attributes[]; };
+layout(std430) writeonly buffer Radiance { uvec2 radiance[]; };
+
+const float INVERSE_PI = 0.3183098862;
+// A voxel's point lies up to sqrt(3)/2 voxels from its surface; this clears it.
+const float SHADOW_OFFSET_VOXELS = 1.0;
+// Mean of the clamped cosine over all directions, for voxels without a normal of their own.
+const float MEAN_COSINE = 0.25;
+
+vec3 direct_irradiance(vec3 p_ws, vec3 normal, float certainty, float offset_m) {
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < lights.length(); ++i) {
+        LightSample light = sample_light(lights[i], p_ws);
+        float cosine = mix(MEAN_COSINE, max(dot(normal, light.to_light), 0.0), certainty);
+        if (cosine * max(light.irradiance.r, max(light.irradiance.g, light.irradiance.b)) <= 0.0) continue;
+        sum += light.irradiance * (cosine * light_visibility(uint(i), p_ws, normal, offset_m));
+    }
+    return sum;
+}
+
+void main() {
+    uint index = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * BRICK_GROUP;
+    if (index >= octree_state.leaf_count * BRICK_VOXELS) return;
+    VoxelAttributes voxel = attributes[index];
+    if (voxel.fragments == 0u) {
+        radiance[index] = uvec2(0u);
+        return;
+    }
+    uint brick = index / BRICK_VOXELS + octree_state.level_first[u_octree.coarsest_leaf];
+    uint octant = index % BRICK_VOXELS;
+    uint cell = bricks[brick].cell;
+    int level = unpack_cell_level(cell);
+    uvec3 point = unpack_cell(cell) * 2u + (uvec3(octant, octant >> 1, octant >> 2) & 1u);
+    float spacing = u_octree.origin_size.w / float(2 << level);
+    vec3 p_ws = u_octree.origin_size.xyz + vec3(point) * spacing;
+
+    vec3 mean_normal = unpackSnorm4x8(voxel.normal).xyz;
+    float squared = dot(mean_normal, mean_normal);
+    vec3 normal = mean_normal * inversesqrt(max(squared, 1e-6));
+    float certainty = min(squared * 4.0, 1.0);
+    vec4 albedo = unpackUnorm4x8(voxel.albedo);
+    vec3 incident = direct_irradiance(p_ws, normal, certainty, spacing * SHADOW_OFFSET_VOXELS) * INVERSE_PI;
+    incident += u_octree.ambient + gathered_radiance(p_ws, normal, spacing);
+    vec3 outgoing = albedo.rgb * incident + rgb9e5_unpack(voxel.emissive);
+    radiance[index] = uvec2(packHalf2x16(outgoing.rg * albedo.a), packHalf2x16(vec2(outgoing.b, 1.0) * albedo.a));
+}

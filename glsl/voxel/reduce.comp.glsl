@@ -1,0 +1,75 @@
+// From the occupied lattice points of a level: the nodes of that level that touch one, and the
+// occupied points of the next coarser lattice. A node exists exactly where a lookup in it, border
+// included, can differ from empty, so empty nodes can be skipped without a jump.
+
+#include "lib/octree_build.glsl"
+#include "shared/octree_level.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(std430) buffer Points { uint point_words[]; };
+layout(std430) buffer NodeBits { uint node_words[]; };
+
+// Points of a 4x4x4 block by their coordinate along an axis, as masks over the block's Morton bits.
+uvec2 odd_half(uint axis) {  // coordinate 1 or 3
+    const uint mask[3] = uint[3](0xaaaaaaaau, 0xccccccccu, 0xf0f0f0f0u);
+    return uvec2(mask[axis]);
+}
+uvec2 upper_half(uint axis) {  // coordinate 2 or 3
+    if (axis == 2u) return uvec2(0u, 0xffffffffu);
+    return uvec2(axis == 0u ? 0xff00ff00u : 0xffff0000u);
+}
+uvec2 lowest(uint axis) { return ~odd_half(axis) & ~upper_half(axis); }
+uvec2 highest(uint axis) { return odd_half(axis) & upper_half(axis); }
+
+// Node offset -1..1 from twice-coarser cell of the block: which points it touches (2n .. 2n + 2).
+uvec2 points_of_node(uint axis, int offset) {
+    return offset < 0 ? lowest(axis) : offset == 0 ? ~highest(axis) : upper_half(axis);
+}
+// Coarser point offset 0..2: which points its filter reaches (2q - 1 .. 2q + 1).
+uvec2 points_of_coarser(uint axis, int offset) {
+    return offset == 0 ? ~upper_half(axis) : offset == 1 ? ~lowest(axis) : highest(axis);
+}
+
+void set_node(ivec3 cell, int level) {
+    uint code = morton_encode(uvec3(cell));
+    uint word = cell_word(level, code);
+    uint bit = cell_bit(code);
+    if ((node_words[word] & bit) == 0u) atomicOr(node_words[word], bit);
+}
+
+void set_coarser_point(ivec3 point, int level) {
+    uint code = morton_encode(uvec3(point));
+    uint word = cell_word(level, code);
+    uint bit = cell_bit(code);
+    if ((point_words[word] & bit) == 0u) atomicOr(point_words[word], bit);
+}
+
+void main() {
+    int level = u_level.level;
+    uint block = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
+    if (block >= grid_block_count(level + 1)) return;
+    uint first_word = (grid_first_block(level + 1) + block) * 2u;
+    uvec2 bits = uvec2(point_words[first_word], point_words[first_word + 1u]);
+    if (bits == uvec2(0u)) return;
+
+    int side = 1 << level;
+    ivec3 base = ivec3(morton_decode(block)) * 2;
+    for (int i = 0; i < 27; ++i) {
+        ivec3 offset = ivec3(i % 3, (i / 3) % 3, i / 9);
+        ivec3 cell = base + offset - 1;
+        uvec2 touched = points_of_node(0u, offset.x - 1) & points_of_node(1u, offset.y - 1)
+                        & points_of_node(2u, offset.z - 1) & bits;
+        bool in_grid = all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(cell, ivec3(side)));
+        if (touched != uvec2(0u) && in_grid && leaf_level_of_cell(uvec3(cell), level) >= level) {
+            set_node(cell, level);
+        }
+        ivec3 coarser = base + offset;
+        uvec2 reached = points_of_coarser(0u, offset.x) & points_of_coarser(1u, offset.y)
+                        & points_of_coarser(2u, offset.z) & bits;
+        // The lattice of level - 1 has as many points as this level has nodes.
+        if (level > 0 && reached != uvec2(0u) && all(lessThan(coarser, ivec3(side)))) {
+            set_coarser_point(coarser, level);
+        }
+    }
+}

@@ -1,0 +1,32 @@
+// Turns a voxel's sums into the averages that lighting reads.
+
+#include "shared/octree.glsl"
+#include "lib/packing.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(std430) readonly buffer State { OctreeState octree_state; };
+layout(std430) readonly buffer ColorSums { uvec4 color_sums[]; };
+layout(std430) readonly buffer NormalSums { ivec4 normal_sums[]; };
+layout(std430) readonly buffer EmissiveSums { uvec4 emissive_sums[]; };
+layout(std430) writeonly buffer Attributes { VoxelAttributes attributes[]; };
+
+void main() {
+    uint voxel = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * BRICK_GROUP;
+    if (voxel >= octree_state.leaf_count * BRICK_VOXELS) return;
+    VoxelAttributes result = VoxelAttributes(0u, 0u, 0u, 0u);
+    uvec4 color = color_sums[voxel];
+    if (color.x > 0u) {
+        float inverse = 1.0 / float(color.x);
+        ivec4 normal = normal_sums[voxel];
+        vec4 albedo = vec4(color.yzw, normal.w) * (inverse / 255.0);
+        result.albedo = packUnorm4x8(albedo);
+        result.normal = packSnorm4x8(vec4(vec3(normal.xyz) * (inverse / 127.0), 0.0));
+        if (u_octree.fixed_point > 0.0) {
+            vec3 emitted = vec3(emissive_sums[voxel].xyz) * (inverse / u_octree.fixed_point);
+            result.emissive = rgb9e5_pack(emitted);
+        }
+        result.fragments = color.x;
+    }
+    attributes[voxel] = result;
+}

@@ -1,0 +1,41 @@
+// Prefix sum over 64-node blocks, first part: ranks inside groups of SCAN_BLOCKS blocks.
+// x counts bricks (existing nodes), y tiles (sibling groups below the dense levels).
+
+#include "lib/octree_build.glsl"
+#include "lib/node_counts.glsl"
+
+layout(local_size_x = 256) in;
+
+layout(std430) readonly buffer NodeBits { uint node_words[]; };
+layout(std430) writeonly buffer Ranks { uvec2 ranks[]; };
+layout(std430) writeonly buffer GroupSums { uvec2 group_sums[]; };
+
+shared uvec2 sums[SCAN_GROUP];
+
+void main() {
+    const uint blocks_a_thread = SCAN_BLOCKS / SCAN_GROUP;
+    uint thread = gl_LocalInvocationID.x;
+    uint first = gl_WorkGroupID.x * SCAN_BLOCKS + thread * blocks_a_thread;
+    uvec2 counts[blocks_a_thread];
+    uvec2 total = uvec2(0u);
+    for (uint i = 0u; i < blocks_a_thread; ++i) {
+        uint block = first + i;
+        counts[i] = total;
+        if (block >= u_octree.block_count) continue;
+        uvec2 bits = uvec2(node_words[block * 2u], node_words[block * 2u + 1u]);
+        total += node_counts(bits, grid_of_block(block));
+    }
+    sums[thread] = total;
+    barrier();
+    for (uint stride = 1u; stride < SCAN_GROUP; stride <<= 1) {
+        uvec2 left = thread >= stride ? sums[thread - stride] : uvec2(0u);
+        barrier();
+        sums[thread] += left;
+        barrier();
+    }
+    uvec2 before = sums[thread] - total;
+    for (uint i = 0u; i < blocks_a_thread; ++i) {
+        if (first + i < u_octree.block_count) ranks[first + i] = before + counts[i];
+    }
+    if (thread == SCAN_GROUP - 1u) group_sums[gl_WorkGroupID.x] = sums[thread];
+}

@@ -1,0 +1,79 @@
+// Prefix sum over 64-node blocks, second part: the groups' sums, the totals, and the arguments of
+// every later indirect dispatch. One work group.
+
+#include "lib/octree_build.glsl"
+#include "lib/node_counts.glsl"
+
+layout(local_size_x = 256) in;
+
+layout(std430) readonly buffer NodeBits { uint node_words[]; };
+layout(std430) readonly buffer Ranks { uvec2 ranks[]; };
+layout(std430) buffer GroupSums { uvec2 group_sums[]; };
+layout(std430) buffer State { OctreeState octree_state; };
+
+shared uvec2 sums[SCAN_GROUP];
+
+DispatchArgs dispatch_args(uint threads, uint group) {
+    // Two dimensions, since one holds 65,535 groups at most.
+    const uint row = 32768u;
+    uint groups = (threads + group - 1u) / group;
+    return DispatchArgs(min(groups, row), max((groups + row - 1u) / row, 1u), 1u, threads);
+}
+
+// Bricks before the first block of a level's grid.
+uint bricks_before_level(int level, uint total) {
+    uint block = grid_first_block(level);
+    if (block >= u_octree.block_count) return total;
+    return ranks[block].x + group_sums[block / SCAN_BLOCKS].x;
+}
+
+void main() {
+    uint thread = gl_LocalInvocationID.x;
+    uint group_count = (u_octree.block_count + SCAN_BLOCKS - 1u) / SCAN_BLOCKS;
+    uint a_thread = (group_count + SCAN_GROUP - 1u) / SCAN_GROUP;
+    uint first = thread * a_thread;
+    uvec2 total = uvec2(0u);
+    for (uint i = first; i < min(first + a_thread, group_count); ++i) total += group_sums[i];
+    sums[thread] = total;
+    barrier();
+    for (uint stride = 1u; stride < SCAN_GROUP; stride <<= 1) {
+        uvec2 left = thread >= stride ? sums[thread - stride] : uvec2(0u);
+        barrier();
+        sums[thread] += left;
+        barrier();
+    }
+    uvec2 before = sums[thread] - total;
+    for (uint i = first; i < min(first + a_thread, group_count); ++i) {
+        uvec2 sum = group_sums[i];
+        group_sums[i] = before;
+        before += sum;
+    }
+    memoryBarrierBuffer();
+    barrier();
+    if (thread != 0u) return;
+
+    uvec2 all = sums[SCAN_GROUP - 1u];
+    int levels = u_octree.leaf_level + 1;
+    // Bricks come coarsest level first, so a clipped pool loses leaves of the finest level.
+    uint before_leaves = bricks_before_level(u_octree.coarsest_leaf, all.x);
+    uint before_finest = bricks_before_level(u_octree.leaf_level, all.x);
+    uint kept = min(all.x, u_octree.brick_capacity);
+    kept = min(kept, before_leaves + u_octree.leaf_capacity);
+    if (before_finest > u_octree.interior_capacity) kept = min(kept, u_octree.interior_capacity);
+    octree_state.brick_count = kept;
+    octree_state.brick_dropped = all.x - kept;
+    octree_state.tile_count = min(all.y, u_octree.tile_capacity);
+    octree_state.tile_dropped = all.y - octree_state.tile_count;
+    octree_state.leaf_count = kept - min(before_leaves, kept);
+    octree_state.interior_count = min(before_finest, kept);
+    octree_state.bricks = dispatch_args(kept, BRICK_GROUP);
+    octree_state.leaf_voxels = dispatch_args(octree_state.leaf_count * BRICK_VOXELS, BRICK_GROUP);
+    for (int level = 0; level <= levels; ++level) {
+        octree_state.level_first[level] = min(bricks_before_level(level, all.x), kept);
+    }
+    for (int level = 0; level < levels; ++level) {
+        uint count = octree_state.level_first[level + 1] - octree_state.level_first[level];
+        octree_state.level_bricks[level] = dispatch_args(count, BRICK_GROUP);
+        octree_state.level_voxels[level] = dispatch_args(count * BRICK_VOXELS, BRICK_GROUP);
+    }
+}

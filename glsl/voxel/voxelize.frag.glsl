@@ -1,0 +1,48 @@
+// Evaluates the artist's material at a lattice point and appends it to the fragment queue.
+// [Mittring12 "Voxel Lighting Pipeline"]: pixel shader pass, output: fragment queue.
+
+#include "shared/octree.glsl"
+#include "shared/voxelize.glsl"
+#include "lib/octree_build.glsl"
+#include "lib/material.glsl"
+#include "lib/packing.glsl"
+
+in vec3 v_point;
+in vec3 v_normal_ws;
+in vec2 v_uv0;
+in vec2 v_uv1;
+in vec4 v_color;
+flat in uint v_material;
+
+layout(std430) buffer State { OctreeState octree_state; };
+layout(std430) buffer Fragments { VoxelFragment fragments[]; };
+
+void main() {
+    Surface surface = evaluate_material(v_material, v_uv0, v_uv1, v_color);
+    bool masked = (materials[v_material].flags & MATERIAL_MASK) != 0u;
+    if (masked && surface.opacity < materials[v_material].alpha_cutoff) discard;
+    bool blended = (materials[v_material].flags & MATERIAL_BLEND) != 0u;
+    float opacity = blended ? surface.opacity : 1.0;
+
+    // The two raster axes are exact by construction; the third is rounded to the nearest point.
+    vec3 nearest = floor(v_point + 0.5);
+    uvec2 pixel = uvec2(gl_FragCoord.xy);
+    if (u_voxelize.axis == 0) nearest.yz = vec2(pixel);
+    else if (u_voxelize.axis == 1) nearest.zx = vec2(pixel);
+    else nearest.xy = vec2(pixel);
+    uvec3 point = uvec3(clamp(nearest, vec3(0.0), vec3(float(u_octree.resolution - 1))));
+
+    uint index = atomicAdd(octree_state.fragment_count, 1u);
+    if (index >= u_octree.fragment_capacity) {
+        atomicAdd(octree_state.fragment_dropped, 1u);
+        return;
+    }
+    // The slide's (index + 63) / 64 misses the first item of each group; this does not.
+    atomicMax(octree_state.fragments.x, index / FRAGMENT_GROUP + 1u);
+    VoxelFragment fragment;
+    fragment.position = pack_position(point);
+    fragment.albedo = packUnorm4x8(vec4(surface.albedo, opacity));
+    fragment.normal = normal_snorm8_pack(normalize(v_normal_ws));
+    fragment.emissive = rgb9e5_pack(surface.emissive);
+    fragments[index] = fragment;
+}

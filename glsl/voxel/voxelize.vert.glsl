@@ -1,0 +1,35 @@
+// One of three orthographic views along an axis, pixel centres on lattice points.
+// [Mittring12 "Voxel Lighting Pipeline": one rasterization pass per axis to avoid holes]
+
+#include "shared/octree.glsl"
+#include "shared/voxelize.glsl"
+#include "shared/instance.glsl"
+
+in vec3 a_position;
+in vec3 a_normal;
+in vec2 a_uv0;
+in vec2 a_uv1;
+in vec4 a_color;
+in uint a_instance;
+
+out vec3 v_point;      // in lattice points
+out vec3 v_normal_ws;
+out vec2 v_uv0;
+out vec2 v_uv1;
+out vec4 v_color;
+flat out uint v_material;
+
+void main() {
+    Instance instance = instances[a_instance];
+    vec3 p_ws = (instance.world_from_local * vec4(a_position, 1.0)).xyz;
+    v_point = (p_ws - u_octree.origin_size.xyz) / u_octree.voxel_m;
+    v_normal_ws = mat3(instance.normal_from_local) * a_normal;
+    v_uv0 = a_uv0;
+    v_uv1 = a_uv1;
+    v_color = a_color;
+    v_material = instance.material;
+    // The axis becomes depth; (x, y, z) turns cyclically, so no view mirrors another.
+    vec3 p = u_voxelize.axis == 0 ? v_point.yzx : u_voxelize.axis == 1 ? v_point.zxy : v_point;
+    vec3 clip = vec3((p.xy + 0.5), p.z) / float(u_octree.resolution) * 2.0 - 1.0;
+    gl_Position = vec4(clip, 1.0);
+}
