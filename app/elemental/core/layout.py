@@ -13,12 +13,15 @@ import re
 from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from elemental.core.paths import glsl_root
+
+Block: TypeAlias = npt.NDArray[np.void]
+"""A packed uniform block or struct: a 0-d structured array, as `pack` makes it."""
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.S)
 _CONSTANT = re.compile(
