@@ -47,9 +47,10 @@ class Messages:
         gl.glDebugMessageCallback(self._callback, None)
 
     def _receive(
-        self, _source: int, kind: int, _id: int, severity: int, length: int, text: Any, _user: Any
+        self, source: int, kind: int, _id: int, severity: int, length: int, text: Any, _user: Any
     ) -> None:
-        if severity not in _SEVERITIES:
+        compiler_error = source == c.DEBUG_SOURCE_SHADER_COMPILER and kind == c.DEBUG_TYPE_ERROR
+        if severity not in _SEVERITIES or compiler_error:  # those are raised as ShaderError
             return
         words = ctypes.string_at(text, length if length >= 0 else -1).decode("utf-8", "replace")
         message = Message(_SEVERITIES[severity], kind == c.DEBUG_TYPE_ERROR, words.strip())

@@ -1,0 +1,33 @@
+"""Fixtures of the whole suite: the device, whose every complaint fails the test that caused it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from elemental.gpu.device import Device
+
+_devices: list[Device] = []
+
+
+@pytest.fixture(scope="session")
+def device() -> Iterator[Device]:
+    """A headless debug device, shared by the session."""
+    made = Device.headless(debug=True)
+    _devices.append(made)
+    yield made
+    _devices.remove(made)
+    made.release()
+
+
+@pytest.fixture(autouse=True)
+def no_driver_messages() -> Iterator[None]:
+    """Fail the test on GL errors and on messages of high or medium severity."""
+    for made in _devices:
+        made.log.messages.clear()
+    yield
+    for made in _devices:
+        made.check()
+        warnings = [str(m) for m in made.log.messages if m.severity in ("high", "medium")]
+        assert not warnings, warnings
