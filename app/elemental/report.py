@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, TypedDict
 
 from elemental.core.errors import InputError
-from elemental.core.images import atomic_file
+from elemental.core.files import atomic_file
 from elemental.gpu.device import Device
 from elemental.scene.model import Scene
 from elemental.settings import Settings

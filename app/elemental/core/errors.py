@@ -24,7 +24,7 @@ class InputError(Exception):
         return [str(self)]
 
 
-class InputErrors(InputError):
+class CombinedInputError(InputError):
     """Several things wrong in one file, all found at once: a line each."""
 
     def __init__(self, file: str | Path, reasons: list[tuple[str, str]]) -> None:

@@ -3,10 +3,6 @@
 from __future__ import annotations
 
 import io
-import os
-import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +11,7 @@ import numpy.typing as npt
 import PIL.Image
 
 from elemental.core.errors import InputError
+from elemental.core.files import atomic_file, read_file
 from elemental.core.rgbe import decode_rgbe
 
 PNG_JPEG_WEBP = ("PNG", "JPEG", "WEBP")
@@ -27,7 +24,7 @@ def read_png_jpeg_webp(source: bytes | Path, name: str | None = None) -> npt.NDA
     `name` is what errors call the image. Raises InputError for a file that can't be decoded.
     """
     label = name or (str(source) if isinstance(source, Path) else "image")
-    encoded = _read_bytes(source, label) if isinstance(source, Path) else source
+    encoded = read_file(source, label) if isinstance(source, Path) else source
     try:
         with PIL.Image.open(io.BytesIO(encoded), formats=PNG_JPEG_WEBP) as image:
             return _rgba8(image)
@@ -43,7 +40,7 @@ def read_environment(path: Path) -> npt.NDArray[np.float32]:
     suffix = path.suffix.lower()
     if suffix == ".hdr":
         try:
-            radiance = decode_rgbe(_read_bytes(path, str(path)))
+            radiance = decode_rgbe(read_file(path))
         except ValueError as error:
             raise InputError(path, "", str(error)) from error
     elif suffix == ".exr":
@@ -62,7 +59,7 @@ def read_exr(path: Path) -> npt.NDArray[np.float32]:
     """
     import OpenEXR  # noqa: PLC0415 (100 ms to import; most runs read no EXR)
 
-    encoded = _read_bytes(path, str(path))
+    encoded = read_file(path)
     try:
         channels = OpenEXR.File(io.BytesIO(encoded), separate_channels=True).channels()
         planes = {name: np.asarray(channel.pixels) for name, channel in channels.items()}
@@ -92,42 +89,6 @@ def write_exr(path: Path, rgb32f: npt.NDArray[np.float32]) -> None:
     channels = {"RGBA"[: pixels.shape[2]]: pixels}
     with atomic_file(path) as temporary:
         OpenEXR.File(header, channels).write(str(temporary))
-
-
-@contextmanager
-def atomic_file(path: Path) -> Iterator[Path]:
-    """A temporary path in `path`'s folder that replaces `path` when the block ends well.
-
-    Raises InputError where the folder is missing or can't be written.
-    """
-    try:
-        handle, name = tempfile.mkstemp(path.suffix, f".{path.stem}-", path.parent)
-    except OSError as error:
-        raise InputError(path, "", f"can't be written ({error.strerror})") from error
-    os.close(handle)
-    temporary = Path(name)
-    try:
-        yield temporary
-        temporary.chmod(0o666 & ~_umask())
-        try:
-            os.replace(temporary, path)
-        except OSError as error:
-            raise InputError(path, "", f"can't be written ({error.strerror})") from error
-    finally:
-        temporary.unlink(missing_ok=True)
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
-
-
-def _read_bytes(path: Path, label: str) -> bytes:
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise InputError(label, "", f"can't be read ({error.strerror})") from error
 
 
 def _rgba8(image: PIL.Image.Image) -> npt.NDArray[np.uint8]:

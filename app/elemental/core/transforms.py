@@ -5,7 +5,7 @@ composition: ``clip_from_world = clip_from_view @ view_from_world``. A camera lo
 Clip space is OpenGL's: z/w from -1 (near) to 1 (far).
 
 pyrr is wrapped here and nowhere else: it works with row vectors and returns float64 (or integers,
-for integer inputs), so each result is transposed and cast.
+for integer inputs), so results are transposed and cast.
 """
 
 from __future__ import annotations
@@ -80,7 +80,8 @@ def rotation(quaternion_xyzw: Vec3Like) -> Matrix:
     length = np.linalg.norm(q)
     if not length > 0.0:
         raise ValueError("a rotation quaternion has length 0")
-    return _from_pyrr(matrix44.create_from_quaternion(q / length))
+    # Unlike its other matrices, pyrr's rotation by a quaternion is for column vectors.
+    return np.asarray(matrix44.create_from_quaternion(q / length)).astype(np.float32)
 
 
 def compose(translation: Vec3Like, quaternion_xyzw: Vec3Like, scale: Vec3Like) -> Matrix:

@@ -24,7 +24,7 @@ IndexArray: TypeAlias = npt.NDArray[np.uint32]
 Wrap: TypeAlias = Literal["repeat", "clamp", "mirror"]
 AlphaMode: TypeAlias = Literal["opaque", "mask", "blend"]
 LightKind: TypeAlias = Literal["directional", "point", "spot"]
-SettingValue: TypeAlias = bool | int | float | str
+SettingValue: TypeAlias = bool | int | float | str | list[float]
 
 
 @dataclass
@@ -165,6 +165,7 @@ class CameraPath:
     eyes: FloatArray
     targets: FloatArray
     fov_y: float
+    near: float
     loop: bool = False
 
 
@@ -234,6 +235,13 @@ class Scene:
         mesh = self.meshes[instance.mesh]
         points = transforms.transform_points(instance.world_from_local, mesh.positions)
         return points.min(axis=0), points.max(axis=0)
+
+
+def unique_name(name: str, taken: set[str]) -> str:
+    """`name`, with a number behind it if another has it already."""
+    if name not in taken:
+        return name
+    return next(f"{name}.{k}" for k in range(2, len(taken) + 3) if f"{name}.{k}" not in taken)
 
 
 FRAMING_FOV_Y = math.radians(39.3)

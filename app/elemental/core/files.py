@@ -1,0 +1,56 @@
+"""Reading whole files and writing them atomically, with errors that the user can act on."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from elemental.core.errors import InputError
+
+
+def read_file(path: Path, file: str | Path | None = None, field: str = "") -> bytes:
+    """A regular file's bytes.
+
+    Raises InputError(`file`, `field`, reason) for anything else; `file` is `path` by default.
+    """
+    blamed = path if file is None else file
+    try:
+        if not path.is_file():
+            raise InputError(blamed, field, "is not a file" if path.exists() else "does not exist")
+        return path.read_bytes()
+    except OSError as error:
+        raise InputError(blamed, field, f"can't be read ({error.strerror})") from error
+    except ValueError as error:
+        raise InputError(blamed, field, f"can't be a file name ({error})") from error
+
+
+@contextmanager
+def atomic_file(path: Path) -> Iterator[Path]:
+    """A temporary path in `path`'s folder that replaces `path` when the block ends well.
+
+    Raises InputError where the folder is missing or can't be written.
+    """
+    try:
+        handle, name = tempfile.mkstemp(path.suffix, f".{path.stem}-", path.parent)
+    except OSError as error:
+        raise InputError(path, "", f"can't be written ({error.strerror})") from error
+    os.close(handle)
+    temporary = Path(name)
+    try:
+        yield temporary
+        temporary.chmod(0o666 & ~_umask())
+        try:
+            os.replace(temporary, path)
+        except OSError as error:
+            raise InputError(path, "", f"can't be written ({error.strerror})") from error
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

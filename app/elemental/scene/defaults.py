@@ -1,0 +1,51 @@
+"""The light of a scene that has none: a sun and an even sky."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from elemental.scene.model import Environment, FloatArray, Light, Scene
+
+SUN_ILLUMINANCE = 3.0
+"""lux: nearly π, so that a white surface facing the sun has a radiance near 1 at exposure 0."""
+SUN_COLOR = (1.0, 0.95, 0.88)
+SUN_ELEVATION = math.radians(50.0)
+SUN_AZIMUTH = math.radians(30.0)
+"""From the default camera's side (+z) towards its right (+x): lit fronts, visible shadows."""
+SKY_TINT = (0.75, 0.87, 1.0)
+SKY_RADIANCE = 0.4
+"""nit; an open horizontal surface then receives π/2.4 from the sky, 35 % of its light."""
+
+
+def is_unlit(scene: Scene) -> bool:
+    """Whether a scene has no light, no emission and no environment."""
+    if scene.environment is not None or any(light.intensity > 0.0 for light in scene.lights):
+        return False
+    used = {scene.meshes[instance.mesh].material for instance in scene.instances}
+    return not any(scene.materials[m].emits for m in used)
+
+
+def add_default_lights(scene: Scene) -> None:
+    """Give the scene a sun and a constant sky, and say so in its notes."""
+    scene.lights.append(default_sun())
+    scene.environment = Environment(None, np.array(SKY_TINT, np.float32), SKY_RADIANCE)
+    scene.notes.append(f"{scene.path}: no light or emission: a default sun and sky light it")
+
+
+def default_sun() -> Light:
+    return Light(
+        name="default sun",
+        kind="directional",
+        color=np.array(SUN_COLOR, np.float32),
+        intensity=SUN_ILLUMINANCE,
+        position=np.zeros(3, np.float32),
+        direction=-_towards_sun(),
+    )
+
+
+def _towards_sun() -> FloatArray:
+    flat = math.cos(SUN_ELEVATION)
+    x, z = flat * math.sin(SUN_AZIMUTH), flat * math.cos(SUN_AZIMUTH)
+    return np.array([x, math.sin(SUN_ELEVATION), z], np.float32)

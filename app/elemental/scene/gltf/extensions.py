@@ -1,0 +1,42 @@
+"""Which glTF extensions are honoured, and what is said of the others."""
+
+from __future__ import annotations
+
+from elemental.core.errors import InputError
+from elemental.scene.gltf.container import Document
+
+SUPPORTED = frozenset({
+    "EXT_texture_webp",
+    "KHR_draco_mesh_compression",
+    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_unlit",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+})  # fmt: skip
+
+WARNED_WHERE_USED = frozenset({"KHR_materials_transmission", "KHR_texture_basisu"})
+"""Partly honoured; the material or image that uses them gives the warning."""
+
+WITHOUT_EFFECT = frozenset({"KHR_xmp", "KHR_xmp_json_ld"})
+"""Nothing to draw."""
+
+APPEARANCE_PREFIX = "KHR_materials_"
+"""Extensions of materials: without them the picture is plainer, yet all of the scene is there."""
+
+
+def check_extensions(document: Document) -> None:
+    """Warn of each extension that is ignored.
+
+    Raises InputError for a required one that isn't known to change materials or textures alone.
+    """
+    root = document.root
+    required = {name.text(): name for name in root.elements("extensionsRequired")}
+    used = [name.text() for name in root.elements("extensionsUsed")]
+    for name in dict.fromkeys([*required, *used]):
+        if name in SUPPORTED | WARNED_WHERE_USED | WITHOUT_EFFECT:
+            continue
+        if name in required and not name.startswith(APPEARANCE_PREFIX):
+            reason = f"{name} is not supported"
+            raise InputError(document.path, required[name].path, reason)
+        document.report.warn("extensionsUsed", f"{name} is not supported and ignored")

@@ -1,0 +1,72 @@
+"""Open a scene by name or path, whatever its kind, and check that it can be drawn."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from elemental.core.errors import InputError
+from elemental.core.paths import content_root
+from elemental.scene.assemble import load_scene_file
+from elemental.scene.defaults import add_default_lights, is_unlit
+from elemental.scene.gltf import load_gltf
+from elemental.scene.model import Scene
+
+GLTF_SUFFIXES = (".gltf", ".glb")
+SCENE_FILE_SUFFIX = ".toml"
+
+LARGEST_COORDINATE = 1e9
+SMALLEST_SIZE = 1e-9
+"""Metres. Between these, distances squared stay well inside float32 [inferred]."""
+
+
+def load_scene(name_or_path: str | Path, *, default_lights: bool) -> Scene:
+    """Load a `.gltf`, `.glb` or `.toml` file, or the scene `content/scenes/<name>.toml`.
+
+    `default_lights` adds a sun and a sky to a scene without light, emission or environment.
+    Raises InputError for whatever can't be opened, read or drawn.
+    """
+    path = _find(name_or_path)
+    suffix = path.suffix.lower()
+    if suffix in GLTF_SUFFIXES:
+        scene = load_gltf(path)
+    elif suffix == SCENE_FILE_SUFFIX:
+        scene = load_scene_file(path)
+    else:
+        raise InputError(path, "", "expected a .gltf, .glb or .toml file")
+    _check_drawable(scene)
+    if default_lights and is_unlit(scene):
+        add_default_lights(scene)
+    return scene
+
+
+def scene_names() -> list[str]:
+    """Names of the scenes that come with the program, sorted."""
+    return sorted(path.stem for path in _content_scenes().glob(f"*{SCENE_FILE_SUFFIX}"))
+
+
+def _content_scenes() -> Path:
+    return content_root() / "scenes"
+
+
+def _find(name_or_path: str | Path) -> Path:
+    path = Path(name_or_path)
+    if path.suffix.lower() in (*GLTF_SUFFIXES, SCENE_FILE_SUFFIX) or path.exists():
+        return path
+    if str(name_or_path) in scene_names():
+        return _content_scenes() / f"{name_or_path}{SCENE_FILE_SUFFIX}"
+    known = ", ".join(scene_names()) or "none"
+    raise InputError(str(name_or_path), "", f"neither a file nor one of the scenes: {known}")
+
+
+def _check_drawable(scene: Scene) -> None:
+    if scene.triangle_count == 0:
+        raise InputError(scene.path, "", "the scene has no triangles")
+    with np.errstate(over="ignore", invalid="ignore"):
+        low, high = scene.bounds()
+    if not (np.isfinite([low, high]).all() and max(-low.min(), high.max()) <= LARGEST_COORDINATE):
+        raise InputError(scene.path, "", f"reaches beyond {LARGEST_COORDINATE:g} m")
+    size = float((high - low).max())
+    if size < SMALLEST_SIZE:
+        raise InputError(scene.path, "", f"is only {size:g} m across")
