@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from elemental.core.paths import content_root
 from elemental.settings import SETTINGS
 
 
@@ -36,9 +35,9 @@ def _settings() -> list[str]:
 
 
 def _scenes() -> list[str]:
-    folder = content_root() / "scenes"
-    files = sorted(folder.glob("*.toml"))
-    return [file.stem for file in files]
+    from elemental.scene.load import scene_names  # noqa: PLC0415 (100 ms to import)
+
+    return scene_names()
 
 
 def _views() -> list[str]:

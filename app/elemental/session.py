@@ -19,6 +19,7 @@ from elemental.core import transforms
 from elemental.core.errors import InputError
 from elemental.core.images import read_environment
 from elemental.gpu.device import Device
+from elemental.scene.defaults import add_default_lights, is_unlit
 from elemental.scene.load import load_scene
 from elemental.scene.model import Camera, Environment, Scene
 from elemental.settings import Settings
@@ -40,15 +41,14 @@ class Stage:
 def open_scene(name: str | None, assignments: Iterable[str]) -> tuple[Scene, Settings]:
     """The scene and its settings: defaults, under the scene file's, under ``key=value`` texts."""
     texts = tuple(assignments)
-    asked = Settings.parse(texts)["scene.default_lights"]
-    source = DEFAULT_SCENE if name is None else name
-    scene = load_scene(source, default_lights=asked)
+    Settings.parse(texts)  # refuse bad words before a large file is read
+    scene = load_scene(DEFAULT_SCENE if name is None else name, default_lights=False)
     settings = Settings.parse(texts, _own_settings(scene))
-    if settings["scene.default_lights"] != asked:
-        scene = load_scene(source, default_lights=settings["scene.default_lights"])
     if settings["sky.image"]:
         radiance = read_environment(Path(settings["sky.image"]))
         scene.environment = Environment(radiance, np.ones(3, np.float32), 1.0)
+    if settings["scene.default_lights"] and is_unlit(scene):
+        add_default_lights(scene)
     return scene, settings
 
 

@@ -23,7 +23,7 @@ def test_glfw_knows_every_key() -> None:
 
 def test_keys_read_as_on_a_keyboard() -> None:
     texts = {binding.action: binding.keys_text() for binding in BINDINGS}
-    assert texts["camera.pick"] == "1 … 9"
+    assert texts["camera.pick"] == "1 to 9"
     assert texts["step"] == "."
     assert texts["fly.up"] == "E or Page Up"
     assert texts["help"] == "F1"

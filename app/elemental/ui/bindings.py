@@ -23,10 +23,10 @@ class Binding:
     help: str
 
     def keys_text(self) -> str:
-        """The keys as one reads them on a keyboard: ``W``, ``1 … 9``, ``E or Page Up``."""
+        """The keys as one reads them on a keyboard: ``W``, ``1 to 9``, ``E or Page Up``."""
         signs = [KEY_SIGNS.get(key, key.replace("_", " ").title()) for key in self.keys]
         if len(signs) > 3:
-            return f"{signs[0]} … {signs[-1]}"
+            return f"{signs[0]} to {signs[-1]}"
         return " or ".join(signs)
 
 

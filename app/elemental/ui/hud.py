@@ -12,7 +12,7 @@ from elemental.ui.bindings import BINDINGS
 RED = imgui.ImVec4(1.0, 0.3, 0.25, 1.0)
 GREY = imgui.ImVec4(0.7, 0.7, 0.7, 1.0)
 MARGIN_PX = 10.0
-BACKGROUND_OPACITY = 0.75
+BACKGROUND_OPACITY = 0.85
 
 _PANEL = (
     imgui.WindowFlags_.no_decoration.value
