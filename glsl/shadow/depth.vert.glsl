@@ -2,9 +2,7 @@
 #include "shared/instance.glsl"
 #include "shared/shadow.glsl"
 
-layout(std140) uniform ShadowPass {
-    uint view;
-} u_pass;
+#include "shared/shadow_pass.glsl"
 
 in vec3 a_position;
 in uint a_instance;

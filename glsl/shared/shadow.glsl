@@ -16,5 +16,4 @@ struct ShadowView {
     uint layer;
 };
 
-// Never empty.
 layout(std430) readonly buffer ShadowViews { ShadowView shadow_views[]; };

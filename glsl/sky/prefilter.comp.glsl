@@ -6,12 +6,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "lib/brdf.glsl"
 #include "lib/packing.glsl"
 
-layout(std140) uniform SkyPrefilter {
-    uint size;          // texels a side, the border included
-    uint source_size;
-    float half_angle;   // of the blur, radians
-    float reserved;
-} u_pass;
+#include "shared/sky_prefilter.glsl"
 
 uniform sampler2D u_source;
 layout(rgba32f) writeonly uniform image2D o_level;

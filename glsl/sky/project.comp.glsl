@@ -4,23 +4,11 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "lib/brdf.glsl"
 #include "lib/packing.glsl"
 
-layout(std140) uniform SkyProject {
-    uint size;      // texels a side, the border included
-    uint samples;   // a side of a texel
-} u_pass;
+#include "shared/sky_project.glsl"
 
 // Row 0 is +y, the middle column -z.
 uniform sampler2D u_equirect;
 layout(rgba32f) writeonly uniform image2D o_level;
-
-// Solid angle of a patch of the octahedral square, up to a constant: the octahedron's face turns
-// away and recedes, |q|^-3 for q on |x| + |y| + |z| = 1.
-float octahedral_weight(vec2 p) {
-    vec3 q = vec3(p, 1.0 - abs(p.x) - abs(p.y));
-    if (q.z < 0.0) q.xy = 1.0 - abs(p.yx);
-    float squared = dot(q, q);
-    return inversesqrt(squared) / squared;
-}
 
 void main() {
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy);

@@ -1,0 +1,1 @@
+"""The systems of a frame: free functions that take graph handles and return graph handles."""

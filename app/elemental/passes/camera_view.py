@@ -1,0 +1,61 @@
+"""The camera of a frame as the uniform block View."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from elemental.core import transforms
+from elemental.core.layout import Block, layouts, pack
+from elemental.scene.model import Camera, FloatArray
+
+FAR_MARGIN = 1.01
+"""How much farther than the scene's farthest corner an open far plane lies."""
+LARGEST_RANGE = 1e6
+"""far / near that still leaves a 24 bit depth buffer something to tell apart [inferred]."""
+
+
+def box_corners(low: FloatArray, high: FloatArray) -> FloatArray:
+    """(8, 3) float32 corners of the box low..high."""
+    picks = np.indices((2, 2, 2)).reshape(3, 8).T.astype(bool)
+    return np.where(picks, high, low).astype(np.float32)
+
+
+def far_plane(camera: Camera, bounds: tuple[FloatArray, FloatArray]) -> float:
+    """The camera's far plane in m, or one just behind the scene where it has none."""
+    if camera.far is not None:
+        return camera.far
+    view_from_world = transforms.inverse(camera.world_from_view)
+    corners = transforms.transform_points(view_from_world, box_corners(*bounds))
+    farthest = float(-corners[:, 2].min()) * FAR_MARGIN
+    return min(max(farthest, 10.0 * camera.near), LARGEST_RANGE * camera.near)
+
+
+def pack_view(
+    camera: Camera,
+    size: tuple[int, int],
+    bounds: tuple[FloatArray, FloatArray],
+    *,
+    exposure: float = 1.0,
+    time_s: float = 0.0,
+    frame: int = 0,
+) -> Block:
+    """The block View of glsl/shared/view.glsl. size: (width, height) px; exposure: a factor."""
+    width, height = size
+    far = far_plane(camera, bounds)
+    view_from_world = transforms.inverse(camera.world_from_view)
+    clip_from_view = transforms.perspective(camera.fov_y, width / height, camera.near, far)
+    clip_from_world = clip_from_view @ view_from_world
+    return pack(
+        layouts().block("View"),
+        clip_from_world=clip_from_world,
+        world_from_clip=transforms.inverse(clip_from_world),
+        view_from_world=view_from_world,
+        world_from_view=camera.world_from_view,
+        viewport_px=(width, height, 1.0 / width, 1.0 / height),
+        eye_ws=camera.world_from_view[:3, 3],
+        exposure=exposure,
+        near=camera.near,
+        far=far,
+        time_s=time_s,
+        frame=frame,
+    )

@@ -1,0 +1,91 @@
+"""The G-buffer: what every pixel's surface is. [Mittring12 "GBuffer" table]"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from elemental.core.layout import Block
+from elemental.gpu.encode import Encoder
+from elemental.gpu.formats import D24S8, RGB10_A2, RGBA8, RGBA16F
+from elemental.gpu.graph import Graph
+from elemental.gpu.refs import Ref, TextureHandle
+from elemental.gpu.shaders import Raster
+from elemental.gpu.state import RasterState
+from elemental.passes.scene_gpu import GpuScene
+from elemental.passes.scene_pack import SOLID
+from elemental.scene.model import AlphaMode
+
+VERT, FRAG = "gbuffer/gbuffer.vert.glsl", "gbuffer/gbuffer.frag.glsl"
+STATE = RasterState(cull="back", depth_test="lequal")
+CLEAR = (0.0, 0.0, 0.0, 0.0)
+
+
+def _variant(alpha_mode: AlphaMode, textured: bool) -> Raster:
+    defines = {"MATERIAL_TEXTURED": int(textured)}
+    if alpha_mode == "mask":
+        defines["ALPHA_MASK"] = 1
+    return Raster(VERT, FRAG, defines=defines)
+
+
+VARIANTS: dict[tuple[AlphaMode, bool], Raster] = {
+    (mode, textured): _variant(mode, textured) for mode in SOLID for textured in (False, True)
+}
+
+
+@dataclass(frozen=True)
+class GBuffer:
+    """Targets of one frame, all (W, H).
+
+    depth D24S8; scene_color RGBA16F: emission, then accumulated radiance, alpha 1 where a surface
+    is; a RGB10_A2 world normal, lighting model; b RGBA8 specular colour, ambient occlusion;
+    c RGBA8 diffuse colour, decal mask; d RGBA8 specular power, subsurface colour.
+    """
+
+    depth: TextureHandle
+    scene_color: TextureHandle
+    a: TextureHandle
+    b: TextureHandle
+    c: TextureHandle
+    d: TextureHandle
+
+    def reads(self) -> dict[str, Ref]:
+        """The depth and the four G-buffer targets by their GLSL names."""
+        return {
+            "u_depth": self.depth,
+            "u_gbuffer_a": self.a,
+            "u_gbuffer_b": self.b,
+            "u_gbuffer_c": self.c,
+            "u_gbuffer_d": self.d,
+        }
+
+
+def draw_gbuffer(g: Graph, view: Block, scene: GpuScene, size: tuple[int, int]) -> GBuffer:
+    """Rasterize every opaque and masked surface. `view`: the packed block View; size in px."""
+    gb = GBuffer(
+        depth=g.texture("gbuffer.depth", size=size, format=D24S8),
+        scene_color=g.texture("scene_color", size=size, format=RGBA16F),
+        a=g.texture("gbuffer.a", size=size, format=RGB10_A2),
+        b=g.texture("gbuffer.b", size=size, format=RGBA8),
+        c=g.texture("gbuffer.c", size=size, format=RGBA8),
+        d=g.texture("gbuffer.d", size=size, format=RGBA8),
+    )
+    present = [key for key in VARIANTS if scene.batches((key[0],), key[1])] or [("opaque", False)]
+    for number, (mode, textured) in enumerate(present):
+
+        def draw(enc: Encoder, mode: AlphaMode = mode, textured: bool = textured) -> None:
+            scene.draw(enc, (mode,), textured=textured)
+
+        first = number == 0
+        g.raster(
+            VARIANTS[mode, textured],
+            name=f"gbuffer.{mode}{'.textured' if textured else ''}",
+            color=[gb.scene_color, gb.a, gb.b, gb.c, gb.d],
+            depth=gb.depth,
+            reads={"Instances": scene.instances, "Materials": scene.materials},
+            params={"View": view},
+            state=STATE,
+            clear_color=CLEAR if first else None,
+            clear_depth=1.0 if first else None,
+            draw=draw,
+        )
+    return gb

@@ -1,0 +1,1 @@
+"""What develops the lit scene into a picture."""

@@ -1,0 +1,198 @@
+"""The scene's meshes, materials and instances as the arrays that the GPU reads; no GL here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from itertools import groupby
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from elemental.core import transforms
+from elemental.core.layout import layouts, pack_array
+from elemental.scene.model import AlphaMode, Material, Scene, TextureSlot
+
+Array: TypeAlias = npt.NDArray[Any]
+
+CATEGORIES: tuple[AlphaMode, ...] = ("opaque", "mask", "blend")
+"""Alpha modes in the order of the draw commands."""
+
+OPAQUE: tuple[AlphaMode, ...] = ("opaque",)
+MASKED: tuple[AlphaMode, ...] = ("mask",)
+SOLID: tuple[AlphaMode, ...] = ("opaque", "mask")
+"""Surfaces that the G-buffer holds."""
+
+SLOTS = ("base_color", "metallic_roughness", "normal", "occlusion", "emissive")
+"""Texture slots, in the order of SLOT_* in glsl/shared/material.glsl."""
+
+SURFACE_VERTEX = np.dtype(
+    [
+        ("a_normal", "<f4", 3),
+        ("a_tangent", "<f4", 4),
+        ("a_uv0", "<f4", 2),
+        ("a_uv1", "<f4", 2),
+        ("a_color", "u1", 4),
+    ]
+)
+"""A vertex without its position, which lies in a buffer of its own for depth-only passes."""
+
+DRAW_COMMAND = np.dtype(
+    [
+        ("count", "<u4"),
+        ("instance_count", "<u4"),
+        ("first_index", "<u4"),
+        ("base_vertex", "<u4"),
+        ("base_instance", "<u4"),
+    ]
+)
+"""DrawElementsIndirectCommand (OpenGL 4.3 core, section 10.3.10)."""
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """Every mesh of a scene in one set of arrays.
+
+    positions (V, 3) float32, surface (V,) SURFACE_VERTEX, indices (I,) uint32 local to a mesh,
+    first_vertex and first_index (M,) by mesh.
+    """
+
+    positions: Array
+    surface: Array
+    indices: Array
+    first_vertex: Array
+    first_index: Array
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Draw commands first .. first + count that share fixed state and textures."""
+
+    first: int
+    count: int
+    alpha_mode: AlphaMode
+    double_sided: bool
+    textures: tuple[int, ...]
+    """Texture numbers by SLOTS, -1 where a slot is empty."""
+
+    @property
+    def textured(self) -> bool:
+        """Whether any slot has a texture."""
+        return max(self.textures) >= 0
+
+
+def pack_geometry(scene: Scene) -> Geometry:
+    """Merge the scene's meshes."""
+    meshes = scene.meshes
+    vertex_counts = np.array([0, *(len(m.positions) for m in meshes)])
+    index_counts = np.array([0, *(len(m.indices) for m in meshes)])
+    surface = np.empty(int(vertex_counts.sum()), SURFACE_VERTEX)
+    fields = {"a_normal": "normals", "a_tangent": "tangents", "a_uv0": "uv0", "a_uv1": "uv1",
+              "a_color": "colors"}  # fmt: skip
+    for attribute, name in fields.items():
+        surface[attribute] = np.concatenate([getattr(m, name) for m in meshes])
+    return Geometry(
+        positions=np.concatenate([m.positions for m in meshes]).astype("<f4"),
+        surface=surface,
+        indices=np.concatenate([m.indices for m in meshes]).astype("<u4"),
+        first_vertex=np.cumsum(vertex_counts)[:-1],
+        first_index=np.cumsum(index_counts)[:-1],
+    )
+
+
+def texture_slots(material: Material) -> tuple[TextureSlot | None, ...]:
+    """A material's slots in the order of SLOTS."""
+    return tuple(getattr(material, f"{slot}_texture") for slot in SLOTS)
+
+
+def pack_materials(scene: Scene) -> Array:
+    """(materials,) of the GLSL struct Material."""
+    materials = scene.materials
+    slots = [texture_slots(material) for material in materials]
+    rows = np.zeros((len(materials), len(SLOTS), 2, 4), np.float32)
+    for number, by_slot in enumerate(slots):
+        for index, slot in enumerate(by_slot):
+            if slot is not None:
+                rows[number, index, :, :3] = slot.uv_from_uv
+
+    def column(name: str) -> list[Any]:
+        return [getattr(material, name) for material in materials]
+
+    return pack_array(
+        layouts().struct("Material"),
+        len(materials),
+        base_color=column("base_color"),
+        emissive=column("emissive"),
+        metallic=column("metallic"),
+        roughness=column("roughness"),
+        normal_scale=column("normal_scale"),
+        occlusion_strength=column("occlusion_strength"),
+        alpha_cutoff=column("alpha_cutoff"),
+        flags=[_flags(material) for material in materials],
+        texture_mask=[_slot_mask(s is not None for s in by_slot) for by_slot in slots],
+        uv_set_mask=[_slot_mask(s is not None and s.uv_set == 1 for s in by_slot)
+                     for by_slot in slots],
+        uv_row_u=rows[:, :, 0],
+        uv_row_v=rows[:, :, 1],
+    )  # fmt: skip
+
+
+def _flags(material: Material) -> int:
+    said = {
+        "UNLIT": material.unlit,
+        "DOUBLE_SIDED": material.double_sided,
+        "MASK": material.alpha_mode == "mask",
+        "BLEND": material.alpha_mode == "blend",
+    }
+    constant = layouts().constant
+    return sum(int(constant(f"MATERIAL_{name}")) for name, holds in said.items() if holds)
+
+
+def _slot_mask(held: Iterable[bool]) -> int:
+    return sum(1 << index for index, holds in enumerate(held) if holds)
+
+
+def pack_instances(scene: Scene) -> Array:
+    """(instances,) of the GLSL struct Instance, in the scene's own order."""
+    matrices = np.array([instance.world_from_local for instance in scene.instances])
+    normals = np.tile(np.eye(4, dtype=np.float32), (len(matrices), 1, 1))
+    normals[:, :3, :3] = [transforms.normal_matrix(matrix) for matrix in matrices]
+    return pack_array(
+        layouts().struct("Instance"),
+        len(matrices),
+        world_from_local=matrices,
+        normal_from_local=normals,
+        material=[scene.meshes[instance.mesh].material for instance in scene.instances],
+    )
+
+
+def pack_draws(scene: Scene, geometry: Geometry) -> tuple[Array, Array, list[Batch]]:
+    """(commands (D,) DRAW_COMMAND, instance numbers (N,) uint32 in draw order, batches).
+
+    Commands of one batch, and batches of one alpha mode, lie together; instances of one mesh share
+    a command.
+    """
+    numbers = range(len(scene.instances))
+    mesh_of = [instance.mesh for instance in scene.instances]
+    keys = [_batch_key(scene, mesh) for mesh in mesh_of]
+    order = sorted(numbers, key=lambda number: (keys[number], mesh_of[number], number))
+    commands: list[tuple[int, int, int, int, int]] = []
+    batches: list[Batch] = []
+    drawn = 0
+    for key, batch in groupby(order, key=keys.__getitem__):
+        first = len(commands)
+        for mesh, same in groupby(batch, key=mesh_of.__getitem__):
+            size, count = len(scene.meshes[mesh].indices), len(list(same))
+            start = (int(geometry.first_index[mesh]), int(geometry.first_vertex[mesh]))
+            commands.append((size, count, *start, drawn))
+            drawn += count
+        batches.append(Batch(first, len(commands) - first, CATEGORIES[key[0]], *key[1:]))
+    return np.array(commands, DRAW_COMMAND), np.array(order, "<u4"), batches
+
+
+def _batch_key(scene: Scene, mesh: int) -> tuple[int, bool, tuple[int, ...]]:
+    """(place in CATEGORIES, double-sided, textures by slot)."""
+    material = scene.materials[scene.meshes[mesh].material]
+    textures = tuple(-1 if s is None else s.texture for s in texture_slots(material))
+    return CATEGORIES.index(material.alpha_mode), material.double_sided, textures

@@ -1,0 +1,174 @@
+"""Where each light's shadow maps look: matrices by light, scene bounds and camera. No GL here."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from elemental.core import transforms
+from elemental.passes.camera_view import box_corners
+from elemental.scene.model import FloatArray, Light
+
+RIM_TEXELS = 4
+"""Texels at a map's rim that a receiver's filter and offset need, SHADOW_CASCADE_MARGIN."""
+SPLIT_BLEND = 0.8
+"""Weight of the logarithmic against the even split of the view's depth [Zhang06 "Parallel-Split
+Shadow Maps"]."""
+NEAR_OVER_FAR = 2e-3
+"""Near plane of a spot or point light's view as a part of its reach [inferred]."""
+DEPTH_BIAS = 2e-6
+"""Rounding of a depth computed twice, in units of the depth buffer: some 32 float32 steps at 1."""
+STABLE_STEPS = 4.0
+"""Cascades keep their size until it changes by 2^(1/4), so that a moving camera does not make the
+shadow's edge crawl [inferred]."""
+
+POINT_FACES = (
+    ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)),
+    ((-1.0, 0.0, 0.0), (0.0, 1.0, 0.0)),
+    ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+    ((0.0, -1.0, 0.0), (0.0, 0.0, 1.0)),
+    ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0)),
+    ((0.0, 0.0, -1.0), (0.0, 1.0, 0.0)),
+)
+"""(direction, up) of a point light's views, in the order of `cube_face` in glsl/lib/shadow.glsl."""
+
+Bounds = tuple[FloatArray, FloatArray]
+
+
+@dataclass(frozen=True)
+class FittedView:
+    """One shadow view: clip_from_world (4, 4) and the width of a texel at a clip w of 1, in m."""
+
+    clip_from_world: FloatArray
+    texel: float
+
+
+@dataclass(frozen=True)
+class ViewFrustum:
+    """What cascades need of the camera: eye (3,), forward (3,) unit, near and far in m, and the
+    tangent of the half angle to the picture's corner."""
+
+    eye: FloatArray
+    forward: FloatArray
+    near: float
+    far: float
+    corner_tangent: float
+
+
+def scene_view(light: Light, bounds: Bounds, resolution: int) -> FittedView:
+    """A directional light's view of the whole scene; it depends on nothing else."""
+    view_from_world = _light_rotation(light)
+    corners = transforms.transform_points(view_from_world, box_corners(*bounds))
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    center = (low + high) / 2
+    half = np.maximum((high - low)[:2].max() / 2, 1e-6) / _rim_scale(resolution)
+    return _ortho(view_from_world, center[:2], float(half), corners[:, 2], resolution)
+
+
+def cascade_views(
+    light: Light,
+    bounds: Bounds,
+    frustum: ViewFrustum,
+    *,
+    count: int,
+    reach: float,
+    resolution: int,
+) -> list[FittedView]:
+    """`count` views along the camera's, the nearest first, that reach `reach` m.
+
+    Each bounds a slice of the frustum by a sphere, so turning the camera does not resize it, and
+    moves by whole texels. [Zhang06], [Valient07 "Stable Rendering of Cascaded Shadow Maps"]
+    """
+    view_from_world = _light_rotation(light)
+    corners = transforms.transform_points(view_from_world, box_corners(*bounds))
+    views = []
+    for near, far in _splits(frustum.near, min(frustum.far, reach), count):
+        center_ws, radius = _slice_sphere(frustum, near, far)
+        radius = 2.0 ** (math.ceil(math.log2(radius) * STABLE_STEPS) / STABLE_STEPS)
+        half = radius / _rim_scale(resolution)
+        texel = 2.0 * half / resolution
+        center = transforms.transform_points(view_from_world, center_ws[None])[0, :2]
+        snapped = np.floor(center / texel) * texel
+        views.append(_ortho(view_from_world, snapped, half, corners[:, 2], resolution))
+    return views
+
+
+def spot_view(light: Light, bounds: Bounds, resolution: int) -> FittedView:
+    """A spot light's view: its outer cone, widened by the rim."""
+    tangent = math.tan(min(light.outer_angle, math.radians(85.0))) / _rim_scale(resolution)
+    rotation = transforms.look_at(light.position, light.position + light.direction)
+    return _perspective(light, rotation, tangent, bounds, resolution)
+
+
+def point_views(light: Light, bounds: Bounds, resolution: int) -> list[FittedView]:
+    """A point light's six views, each a right angle widened by the rim."""
+    tangent = 1.0 / _rim_scale(resolution)
+    position = light.position
+    return [
+        _perspective(
+            light,
+            transforms.look_at(position, position + np.array(direction, np.float32), up),
+            tangent,
+            bounds,
+            resolution,
+        )
+        for direction, up in POINT_FACES
+    ]
+
+
+def _rim_scale(resolution: int) -> float:
+    """Share of a map's width that is left inside the rim."""
+    return 1.0 - 2.0 * RIM_TEXELS / resolution
+
+
+def _light_rotation(light: Light) -> FloatArray:
+    return transforms.look_at((0.0, 0.0, 0.0), light.direction)
+
+
+def _ortho(
+    view_from_world: FloatArray,
+    center: FloatArray,
+    half: float,
+    depths: FloatArray,
+    resolution: int,
+) -> FittedView:
+    """A square box about `center` that holds every caster; `depths`: the scene's z there."""
+    near, far = -float(depths.max()), -float(depths.min())
+    slack = 1e-3 * max(far - near, half)
+    x, y = float(center[0]), float(center[1])
+    clip_from_view = transforms.orthographic(
+        x - half, x + half, y - half, y + half, near - slack, far + slack
+    )
+    return FittedView(clip_from_view @ view_from_world, 2.0 * half / resolution)
+
+
+def _perspective(
+    light: Light, view_from_world: FloatArray, tangent: float, bounds: Bounds, resolution: int
+) -> FittedView:
+    corners = box_corners(*bounds)
+    farthest = float(np.linalg.norm(corners - light.position, axis=1).max())
+    far = max(min(light.range, farthest) * 1.001, 1e-6)
+    clip_from_view = transforms.perspective(2.0 * math.atan(tangent), 1.0, NEAR_OVER_FAR * far, far)
+    return FittedView(clip_from_view @ view_from_world, 2.0 * tangent / resolution)
+
+
+def _splits(near: float, far: float, count: int) -> Sequence[tuple[float, float]]:
+    """Depth ranges of `count` slices between near and far, in m."""
+    far = max(far, near * 1.001)
+    steps = np.arange(count + 1) / count
+    logarithmic = near * (far / near) ** steps
+    even = near + (far - near) * steps
+    edges = SPLIT_BLEND * logarithmic + (1.0 - SPLIT_BLEND) * even
+    return [(float(a), float(b)) for a, b in pairwise(edges)]
+
+
+def _slice_sphere(frustum: ViewFrustum, near: float, far: float) -> tuple[FloatArray, float]:
+    """(centre (3,), radius) of the smallest sphere on the axis around a slice of the frustum."""
+    squared = frustum.corner_tangent**2
+    depth = min((near + far) * (1.0 + squared) / 2.0, far)
+    radius = math.hypot(far - depth, far * frustum.corner_tangent)
+    return frustum.eye + frustum.forward * np.float32(depth), radius

@@ -1,0 +1,67 @@
+"""Pictures of what the frame computes on its way."""
+
+from __future__ import annotations
+
+from elemental.core.layout import Block
+from elemental.gpu.formats import RGBA8, RGBA16F
+from elemental.gpu.graph import Graph
+from elemental.gpu.refs import TextureHandle
+from elemental.gpu.shaders import Compute
+from elemental.passes.gbuffer import GBuffer
+from elemental.passes.shadow import ShadowMaps
+
+CHANNELS = {
+    "normal": "world normal, -1..1 as 0..1",
+    "diffuse": "diffuse colour",
+    "specular": "specular colour",
+    "specular_power": "specular power by its code, false colour: white is sharpest",
+    "ao": "the material's ambient occlusion",
+    "depth": "distance, logarithmic, false colour: white is the near plane",
+    "lighting_model": "lighting model: black unlit, violet default, orange subsurface",
+    "subsurface": "subsurface colour",
+}
+"""Views of one G-buffer channel -> help; display codes. In the order of CHANNEL_* in
+glsl/views/surface.comp.glsl."""
+
+LIGHT_VIEWS = {
+    "shadow": "share of the lights' irradiance that arrives",
+    "direct": "radiance by direct light alone",
+}
+"""Views of the lights -> help; linear."""
+
+SURFACE = {
+    name: Compute("views/surface.comp.glsl", defines={"CHANNEL": number})
+    for number, name in enumerate(CHANNELS)
+}
+LIGHTS = {
+    name: Compute("views/lights.comp.glsl", defines={"SHOW_RADIANCE": int(name == "direct")})
+    for name in LIGHT_VIEWS
+}
+
+
+def surface_view(g: Graph, view: Block, gb: GBuffer, name: str) -> TextureHandle:
+    """One of CHANNELS as a picture, (H, W) RGBA8 display codes; black where nothing is."""
+    image = g.texture(f"view.{name}", size=gb.depth.size, format=RGBA8)
+    g.compute(
+        SURFACE[name],
+        f"view.{name}",
+        reads=gb.reads(),
+        writes={"o_image": image},
+        params={"View": view},
+        threads=image.size,
+    )
+    return image
+
+
+def light_view(g: Graph, view: Block, gb: GBuffer, shadows: ShadowMaps, name: str) -> TextureHandle:
+    """One of LIGHT_VIEWS, (H, W) RGBA16F linear."""
+    image = g.texture(f"view.{name}", size=gb.depth.size, format=RGBA16F)
+    g.compute(
+        LIGHTS[name],
+        f"view.{name}",
+        reads={**gb.reads(), **shadows.reads()},
+        writes={"o_image": image},
+        params={"View": view, **shadows.params()},
+        threads=image.size,
+    )
+    return image

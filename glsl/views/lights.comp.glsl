@@ -1,0 +1,53 @@
+// What the lights alone do: their visibility, or the radiance that they add.
+#ifndef SHOW_RADIANCE
+#define SHOW_RADIANCE 0
+#endif
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+#include "lib/direct.glsl"
+#include "lib/gbuffer.glsl"
+#include "lib/view.glsl"
+
+uniform sampler2D u_depth;
+uniform sampler2D u_gbuffer_a;
+uniform sampler2D u_gbuffer_b;
+uniform sampler2D u_gbuffer_c;
+uniform sampler2D u_gbuffer_d;
+layout(rgba16f) writeonly uniform image2D o_image;
+
+// Share of the unshadowed irradiance that arrives; 1 where no light could reach the surface anyway.
+vec3 visibility(ShadingPoint point) {
+    vec3 arriving = vec3(0.0);
+    vec3 unshadowed = vec3(0.0);
+    for (uint i = 0u; i < uint(lights.length()); ++i) {
+        LightSample s = sample_light(lights[i], point.p_ws);
+        vec3 irradiance = s.irradiance * max(dot(point.n_ws, s.to_light), 0.0);
+        if (max(irradiance.r, max(irradiance.g, irradiance.b)) <= 0.0) continue;
+        unshadowed += irradiance;
+        arriving += irradiance * light_visibility_in_view(i, point.p_ws, point.n_ws);
+    }
+    return mix(arriving / max(unshadowed, vec3(1e-30)), vec3(1.0), equal(unshadowed, vec3(0.0)));
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, ivec2(u_view.viewport_px.xy)))) return;
+    float depth = texelFetch(u_depth, pixel, 0).r;
+    vec3 color = vec3(0.0);
+    if (depth != DEPTH_CLEAR) {
+        GBufferSurface s = gbuffer_unpack(GBufferTexels(
+            texelFetch(u_gbuffer_a, pixel, 0), texelFetch(u_gbuffer_b, pixel, 0),
+            texelFetch(u_gbuffer_c, pixel, 0), texelFetch(u_gbuffer_d, pixel, 0)));
+        vec3 p_ws = position_ws_at((vec2(pixel) + 0.5) * u_view.viewport_px.zw, depth);
+        ShadingPoint point = ShadingPoint(p_ws, s.normal_ws, normalize(u_view.eye_ws - p_ws),
+                                          s.albedo, s.specular_color, s.specular_power);
+#if SHOW_RADIANCE
+        DirectLight direct = direct_light(point);
+        color = s.lighting_model == LIGHTING_UNLIT ? vec3(0.0) : direct.diffuse + direct.specular;
+#else
+        color = visibility(point);
+#endif
+    }
+    imageStore(o_image, pixel, vec4(color, 1.0));
+}
