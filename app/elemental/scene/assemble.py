@@ -154,7 +154,7 @@ def _camera(table: CameraTable) -> Camera:
 
 def _camera_path(table: PathTable) -> CameraPath:
     return CameraPath(
-        times=_vec([key.time for key in table.keys]),
+        times=np.array([key.time for key in table.keys], np.float64),
         eyes=np.array([key.eye for key in table.keys], np.float32),
         targets=np.array([key.target for key in table.keys], np.float32),
         fov_y=math.radians(table.fov_y_deg),

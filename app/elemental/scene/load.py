@@ -8,7 +8,6 @@ import numpy as np
 
 from elemental.core.errors import InputError
 from elemental.core.paths import content_root
-from elemental.scene.assemble import load_scene_file
 from elemental.scene.defaults import add_default_lights, is_unlit
 from elemental.scene.gltf import load_gltf
 from elemental.scene.model import Scene
@@ -32,6 +31,9 @@ def load_scene(name_or_path: str | Path, *, default_lights: bool) -> Scene:
     if suffix in GLTF_SUFFIXES:
         scene = load_gltf(path)
     elif suffix == SCENE_FILE_SUFFIX:
+        # Pydantic and its models take 120 ms to import, which glTF files need not pay.
+        from elemental.scene.assemble import load_scene_file  # noqa: PLC0415
+
         scene = load_scene_file(path)
     else:
         raise InputError(path, "", "expected a .gltf, .glb or .toml file")

@@ -159,9 +159,9 @@ class Camera:
 
 @dataclass
 class CameraPath:
-    """A camera's motion: keys at `times` (K,) s, increasing, of eyes and targets (K, 3) m."""
+    """A camera's motion: keys at `times` (K,) float64 s, increasing; eyes, targets (K, 3) m."""
 
-    times: FloatArray
+    times: npt.NDArray[np.float64]
     eyes: FloatArray
     targets: FloatArray
     fov_y: float

@@ -17,6 +17,8 @@ AFFINE_ROW = (0.0, 0.0, 0.0, 1.0)
 SINGULAR_VOLUME = 1e-9
 """Least volume of a transformed unit cube, as a part of its edges' product, that still counts as
 three-dimensional [inferred]."""
+SHORTEST_EDGE = 1e-15
+"""Least length of such an edge: float32 still holds the inverse's cube [inferred]."""
 
 
 @dataclass(frozen=True)
@@ -68,8 +70,10 @@ def placed_nodes(document: Document) -> Iterator[PlacedNode]:
 def volume_ratio(world_from_local: FloatArray) -> float:
     """|det| of the linear part over the product of its columns' lengths: 1 where orthogonal."""
     linear = world_from_local[:3, :3].astype(np.float64)
-    product = float(np.prod(np.linalg.norm(linear, axis=0)))
-    return abs(float(np.linalg.det(linear))) / product if product > 0.0 else 0.0
+    edges = np.linalg.norm(linear, axis=0)
+    if edges.min() < SHORTEST_EDGE:
+        return 0.0
+    return abs(float(np.linalg.det(linear / edges)))
 
 
 def _parents(nodes: list[Field]) -> list[int | None]:
