@@ -146,8 +146,8 @@ def bench(words: Bench) -> None:
     stage = set_stage(words.scene, words.assignments, Viewpoint(), words.size)
     device = headless_device()
     renderer = Renderer(device, stage.scene, stage.settings, words.size)
-    samples = measure(renderer, device, stage.camera, words)
-    frame = renderer.render(stage.camera, 0.0, words.warmup + words.frames)
+    samples = measure(renderer, device, stage.camera_at(0.0), words)
+    frame = renderer.render(stage.camera_at(0.0), 0.0, words.warmup + words.frames)
     device.finish()
     counters = {name: int(count) for name, count in frame.counters.items()}
     report: BenchReport = {

@@ -31,7 +31,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         options.command(options)
         sys.stdout.flush()
     except InputError as error:
-        return _refuse(str(error))
+        first, *more = error.lines
+        return _refuse("; ".join([first, *(line.removeprefix(f"{error.file}: ") for line in more)]))
     except MemoryError as error:
         return _refuse(f"out of memory: {error}" if str(error) else "out of memory")
     except BrokenPipeError:

@@ -19,9 +19,10 @@ from elemental.core import transforms
 from elemental.core.errors import InputError
 from elemental.core.images import read_environment
 from elemental.gpu.device import Device
+from elemental.scene.camera_path import camera_at
 from elemental.scene.defaults import add_default_lights, is_unlit
 from elemental.scene.load import load_scene
-from elemental.scene.model import Camera, Environment, Scene
+from elemental.scene.model import Camera, CameraPath, Environment, Scene
 from elemental.settings import Settings
 
 DEFAULT_SCENE = "atrium"
@@ -31,11 +32,19 @@ Point = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Stage:
-    """An opened scene with the settings and the camera that a door asked for."""
+    """An opened scene with the settings and the camera that a door asked for.
+
+    ``path`` is the scene's camera path, None where it has none or a fixed camera was asked for.
+    """
 
     scene: Scene
     settings: Settings
     camera: Camera
+    path: CameraPath | None
+
+    def camera_at(self, time_s: float) -> Camera:
+        """The camera of the frame at ``time_s`` seconds of scene time."""
+        return self.camera if self.path is None else camera_at(self.path, time_s)
 
 
 def open_scene(name: str | None, assignments: Iterable[str]) -> tuple[Scene, Settings]:
@@ -72,7 +81,11 @@ def set_stage(
 ) -> Stage:
     """``open_scene`` and ``choose_camera`` for a picture of ``size`` pixels."""
     scene, settings = open_scene(name, assignments)
-    return Stage(scene, settings, choose_camera(scene, viewpoint, size[0] / size[1]))
+    camera = choose_camera(scene, viewpoint, size[0] / size[1])
+    path = scene.camera_path if viewpoint.camera is None and viewpoint.eye is None else None
+    if path is not None and viewpoint.fov_deg is not None:
+        path = replace(path, fov_y=camera.fov_y)
+    return Stage(scene, settings, camera, path)
 
 
 def headless_device() -> Device:

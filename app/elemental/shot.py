@@ -72,7 +72,8 @@ def shoot(shot: Shot) -> None:
     is_sequence = FRAME_NUMBER.search(shot.output.name) is not None
     for index in range(shot.frames):
         began = time.perf_counter()
-        frame = renderer.render(stage.camera, shot.time + index / shot.fps, index, shot.view)
+        time_s = shot.time + index / shot.fps
+        frame = renderer.render(stage.camera_at(time_s), time_s, index, shot.view)
         device.finish()
         wall_ms = 1e3 * (time.perf_counter() - began)
         if is_sequence or index == shot.frames - 1:

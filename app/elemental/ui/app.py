@@ -61,6 +61,8 @@ class App:
         self.gui = Gui(window)
         self.renderer = Renderer(self.device, stage.scene, stage.settings, words.size)
         self.fly = FlyCamera.at(stage.camera, _diagonal(stage))
+        self.rides = stage.path is not None
+        """Whether the scene's camera path moves the camera, until the user does."""
         self.clock = SceneClock()
         self.averages = Averages()
         self.views = list(VIEWS)
@@ -91,8 +93,11 @@ class App:
         self._reload_shaders()
         began = time.perf_counter()
         self.renderer.resize(size)
-        camera = self.fly.camera()
-        self.frame = self.renderer.render(camera, self.clock.time_s, self.drawn, self.view)
+        if self.rides:
+            self.fly.jump(self.stage.camera_at(self.clock.time_s))
+        self.frame = self.renderer.render(
+            self.fly.camera(), self.clock.time_s, self.drawn, self.view
+        )
         present(self.device, self.frame, size)
         self._cpu_ms = 1e3 * (time.perf_counter() - began)
         timings = [(timing.name, timing.gpu_ms) for timing in self.device.timings]
@@ -109,6 +114,7 @@ class App:
                 self.act(action, index, shift)
             self._fly()
         if not self.gui.wants_mouse:
+            self.rides = self.rides and not any(events.drag_px)
             self.fly.look(*events.drag_px)
             self.fly.scroll(events.scroll)
 
@@ -118,6 +124,7 @@ class App:
             case "camera.pick":
                 self._pick_camera(index)
             case "camera.home":
+                self.rides = self.stage.path is not None
                 self.fly.jump(self.stage.camera)
             case "help":
                 self.shows_help = not self.shows_help
@@ -165,11 +172,13 @@ class App:
         right = held("fly.right") - held("fly.left")
         up = held("fly.up") - held("fly.down")
         forward = held("fly.forward") - held("fly.back")
+        self.rides = self.rides and not (right or up or forward)
         self.fly.fly(factor * right, factor * up, factor * forward, self._frame_s)
 
     def _pick_camera(self, index: int) -> None:
         cameras = self.stage.scene.cameras
         if index < len(cameras):
+            self.rides = False
             self.fly.jump(cameras[index])
             self.say(f"camera {index + 1}: {cameras[index].name}")
         else:

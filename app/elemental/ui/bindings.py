@@ -42,7 +42,9 @@ BINDINGS = (
     Binding("fly.look", "mouse", ("Mouse drag",), "look around, left or right button"),
     Binding("fly.speed", "mouse", ("Mouse wheel",), "flying speed"),
     Binding("camera.pick", "press", tuple("123456789"), "go to that camera of the scene"),
-    Binding("camera.home", "press", ("HOME", "0"), "go back to the first view"),
+    Binding(
+        "camera.home", "press", ("HOME", "0"), "go back to the first view, or onto the camera path"
+    ),
     Binding("help", "press", ("F1",), "show or hide this list"),
     Binding("hud", "press", ("F6",), "show or hide pass times and counters"),
     Binding("fullscreen", "press", ("F11",), "fullscreen or window"),

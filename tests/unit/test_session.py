@@ -1,0 +1,135 @@
+"""What the doors settle before the first frame."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cli.small_scene import write_corner
+from elemental.core.errors import InputError
+from elemental.core.images import write_exr
+from elemental.scene.model import Scene
+from elemental.session import (
+    Viewpoint,
+    check_output,
+    choose_camera,
+    frame_file,
+    known_name,
+    open_scene,
+    set_stage,
+)
+
+
+@pytest.fixture
+def corner(tmp_path: Path) -> Scene:
+    scene, _ = open_scene(str(write_corner(tmp_path)), ())
+    return scene
+
+
+def test_a_scene_opens_with_its_settings(tmp_path: Path) -> None:
+    path = write_corner(tmp_path)
+    scene, settings = open_scene(str(path), ["exposure=1"])
+    assert scene.triangle_count == 6
+    assert settings.changed() == {"exposure": 1.0}
+    assert scene.lights == []  # the lamp emits: no default sun
+
+
+def test_settings_lie_in_layers(tmp_path: Path) -> None:
+    write_corner(tmp_path)
+    (tmp_path / "corner.toml").write_text(
+        'models = [{ file = "corner.gltf" }]\n[settings]\ngi = { bounces = 2, resolution = 64 }\n'
+    )
+    _, settings = open_scene(str(tmp_path / "corner.toml"), ["gi.resolution=256"])
+    assert settings.changed() == {"gi.bounces": 2, "gi.resolution": 256}
+
+
+def test_a_sky_image_replaces_the_environment(tmp_path: Path) -> None:
+    sky = np.full((2, 4, 3), 0.5, np.float32)
+    write_exr(tmp_path / "sky.exr", sky)
+    words = [f"sky.image={tmp_path / 'sky.exr'}"]
+    scene, _ = open_scene(str(write_corner(tmp_path)), words)
+    assert scene.environment is not None
+    np.testing.assert_array_equal(scene.environment.radiance, sky)
+
+
+def test_the_scene_camera_is_taken_unless_another_is_asked_for(corner: Scene) -> None:
+    assert choose_camera(corner, Viewpoint(), 1.5) is corner.cameras[0]
+    assert choose_camera(corner, Viewpoint(camera="front"), 1.5) is corner.cameras[0]
+    wide = choose_camera(corner, Viewpoint(fov_deg=90), 1.5)
+    assert wide.fov_y == pytest.approx(math.pi / 2)
+    assert wide.world_from_view is corner.cameras[0].world_from_view
+
+
+def test_a_camera_path_is_followed_unless_a_camera_is_asked_for(tmp_path: Path) -> None:
+    write_corner(tmp_path)
+    (tmp_path / "ride.toml").write_text(
+        'models = [{ file = "corner.gltf" }]\n[camera_path]\nkeys = [\n'
+        "{ time = 0.0, eye = [0.0, 1.0, 4.0], target = [0.0, 1.0, 0.0] },\n"
+        "{ time = 2.0, eye = [2.0, 1.0, 4.0], target = [2.0, 1.0, 0.0] }]\n"
+    )
+    ride = set_stage(str(tmp_path / "ride.toml"), (), Viewpoint(fov_deg=30), (8, 8))
+    place = ride.camera_at(2.0).world_from_view[:3, 3]
+    np.testing.assert_allclose(place, [2, 1, 4], atol=1e-5)
+    assert ride.camera_at(1.0).fov_y == pytest.approx(math.radians(30))
+    still = set_stage(str(tmp_path / "ride.toml"), (), Viewpoint(camera="front"), (8, 8))
+    assert still.camera_at(2.0) is still.camera
+
+
+def test_a_camera_by_place_looks_there(corner: Scene) -> None:
+    camera = choose_camera(corner, Viewpoint(eye=(3, 4, 0), target=(0, 0, 0)), 1.5)
+    np.testing.assert_allclose(camera.world_from_view[:3, 3], [3, 4, 0], atol=1e-6)
+    np.testing.assert_allclose(-camera.world_from_view[:3, 2], [-0.6, -0.8, 0], atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    "viewpoint",
+    [
+        Viewpoint(camera="nobody"),
+        Viewpoint(eye=(0, 0, 1)),
+        Viewpoint(target=(0, 0, 1)),
+        Viewpoint(eye=(0, 0, 1), target=(0, 0, 1)),
+        Viewpoint(camera="front", eye=(0, 0, 1), target=(0, 0, 0)),
+    ],
+)
+def test_a_viewpoint_that_is_none_is_refused(corner: Scene, viewpoint: Viewpoint) -> None:
+    with pytest.raises(InputError):
+        choose_camera(corner, viewpoint, 1.5)
+
+
+def test_bad_words_are_refused_before_a_file_is_read() -> None:
+    with pytest.raises(InputError, match=r"gi\.resolution"):
+        set_stage("nowhere.gltf", ["gi.resolution=3"], Viewpoint(), (8, 8))
+
+
+def test_a_name_is_known_or_the_nearest_is_told() -> None:
+    names = ["final", "normal", "depth"]
+    assert known_name("--view", "depth", names) == "depth"
+    with pytest.raises(InputError, match="did you mean 'final'"):
+        known_name("--view", "finale", names)
+    with pytest.raises(InputError, match="known: final, normal, depth"):
+        known_name("--view", "", names)
+
+
+def test_outputs_are_checked_before_work_is_spent(tmp_path: Path) -> None:
+    check_output("-o", tmp_path / "A.PNG", (".png", ".exr"))
+    (tmp_path / "folder.png").mkdir()
+    for path in ("a.gif", "a", "folder.png", "nowhere/a.png"):
+        with pytest.raises(InputError, match="-o"):
+            check_output("-o", tmp_path / path, (".png", ".exr"))
+
+
+@pytest.mark.parametrize(
+    ("pattern", "frame", "name"),
+    [
+        ("a.png", 7, "a.png"),
+        ("a.%04d.png", 7, "a.0007.png"),
+        ("a%d.png", 12, "a12.png"),
+        ("a%2d.exr", 7, "a07.exr"),
+        ("100%.png", 7, "100%.png"),
+    ],
+)
+def test_frame_numbers_in_names(pattern: str, frame: int, name: str) -> None:
+    assert frame_file(Path("out") / pattern, frame) == Path("out") / name
