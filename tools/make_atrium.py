@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+
 from atrium.glb import GlbWriter
 from atrium.layout import places
 from atrium.materials import MATERIALS, MaterialWriter

@@ -40,13 +40,9 @@ def _leaf(root: F64, width: float, height: float, curl: float, thickness: float)
     front[..., 2] = -outline[:, None] * across
     back = front.copy()
     back[..., 0] -= thickness * 1.6
-    rim_front = np.concatenate(
-        [front[0, :-1], front[:-1, -1], front[-1, :0:-1], front[::-1, 0]]
-    )
+    rim_front = np.concatenate([front[0, :-1], front[:-1, -1], front[-1, :0:-1], front[::-1, 0]])
     rim_back = np.concatenate([back[0, :-1], back[:-1, -1], back[-1, :0:-1], back[::-1, 0]])
-    leaf = join(
-        sheet(front).flipped(), sheet(back), sheet(np.stack([rim_back, rim_front], axis=1))
-    )
+    leaf = join(sheet(front).flipped(), sheet(back), sheet(np.stack([rim_back, rim_front], axis=1)))
     return Soup(leaf.position + root, leaf.uv)
 
 
@@ -135,8 +131,6 @@ def corbel() -> Soup:
     parts, y = [], 0.0
     for width, tall, reach in steps:
         depth = reach + 0.1  # 0.1 m of it stands inside the wall
-        parts.append(
-            box((depth, tall, width), (0.1 - depth / 2.0, y - tall / 2.0, 0.0), 0.015)
-        )
+        parts.append(box((depth, tall, width), (0.1 - depth / 2.0, y - tall / 2.0, 0.0), 0.015))
         y -= tall
     return join(*parts)

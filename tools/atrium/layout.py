@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -21,6 +22,8 @@ SLAB = 4.4  # top of the vaults
 LOGGIA = 4.6  # floor of the upper storey
 LOGGIA_SPRING = 6.95
 EAVES = 8.1
+
+BEAM_SPACING = 0.72
 
 QUARTER = np.pi / 2.0
 
@@ -71,51 +74,45 @@ def _architecture() -> Iterator[Place]:
         yield Place("loggia_arch", x, LOGGIA_SPRING, z, yaw)
         yield Place("balustrade", x, LOGGIA, z, yaw)
         yield Place("dentils", x, EAVES, z, yaw)
-    for sx in (-1, 1):
-        for sz in (-1, 1):
-            yield Place("corner_piers", sx * HALF_X, 0.0, sz * HALF_Z)
+    for sx, sz in product((-1, 1), repeat=2):
+        yield Place("corner_piers", sx * HALF_X, 0.0, sz * HALF_Z)
+
+
+def _ceilings() -> Iterator[Place]:
     outer_x, outer_z = HALF_X + BAY / 2.0, HALF_Z + BAY / 2.0
-    for k in range(BAYS_X + 2):
-        for z in (-outer_z, outer_z):
-            yield Place("vault", -outer_x + k * BAY, SPRING, z)
-    for k in range(BAYS_Z):
-        for x in (-outer_x, outer_x):
-            yield Place("vault", x, SPRING, -HALF_Z + (k + 0.5) * BAY)
-    for k in range(BAYS_X + 1):
+    for k, z in product(range(BAYS_X + 2), (-outer_z, outer_z)):
+        yield Place("vault", -outer_x + k * BAY, SPRING, z)
+    for k, x in product(range(BAYS_Z), (-outer_x, outer_x)):
+        yield Place("vault", x, SPRING, -HALF_Z + (k + 0.5) * BAY)
+    for k, side in product(range(BAYS_X + 1), (-1, 1)):
         x = -HALF_X + k * BAY
-        for side in (-1, 1):
-            yield Place("rib", x, SPRING, side * outer_z, QUARTER)
-            yield Place("corbel", x, SPRING, side * (HALF_Z + BAY), -side * QUARTER)
-    for k in range(BAYS_Z + 1):
+        yield Place("rib", x, SPRING, side * outer_z, QUARTER)
+        yield Place("corbel", x, SPRING, side * (HALF_Z + BAY), -side * QUARTER)
+    for k, side in product(range(BAYS_Z + 1), (-1, 1)):
         z = -HALF_Z + k * BAY
-        for side in (-1, 1):
-            yield Place("rib", side * outer_x, SPRING, z)
-            yield Place("corbel", side * (HALF_X + BAY), SPRING, z, (1 - side) * QUARTER)
-    for x in np.arange(-15, 16) * 0.72:
-        for z in (-outer_z, outer_z):
-            yield Place("beam", float(x), EAVES, z)
-    for z in np.arange(-5, 6) * 0.72:
-        for x in (-outer_x, outer_x):
-            yield Place("beam", x, EAVES, float(z), QUARTER)
+        yield Place("rib", side * outer_x, SPRING, z)
+        yield Place("corbel", side * (HALF_X + BAY), SPRING, z, (1 - side) * QUARTER)
+    for k, z in product(range(-15, 16), (-outer_z, outer_z)):
+        yield Place("beam", k * BEAM_SPACING, EAVES, z)
+    for k, x in product(range(-5, 6), (-outer_x, outer_x)):
+        yield Place("beam", x, EAVES, k * BEAM_SPACING, QUARTER)
 
 
 COLORS = ("red", "green", "blue")
 
 
 def _cloth() -> Iterator[Place]:
-    curtains = ((0, 0), (2, 2), (3, 1), (5, 0)), ((1, 1), (4, 2))
-    for side, bays in zip((-1, 1), curtains, strict=True):
-        for bay, color in bays:
-            x = -HALF_X + (bay + 0.5) * BAY
-            yield Place(
-                f"curtain_{COLORS[color]}", x, SPRING - 0.17, side * HALF_Z, (1 + side) * QUARTER
-            )
-    for k, bay in enumerate((-2.0, 0.0, 2.0)):
-        for side in (-1, 1):
-            color = COLORS[(k + (1 - side) // 2) % 3]
-            yield Place(
-                f"banner_{color}", bay * BAY, EAVES - 0.08, side * (HALF_Z - 0.52), (1 + side) * QUARTER
-            )
+    curtains = (
+        *((-1, 0, "red"), (-1, 2, "blue"), (-1, 3, "green"), (-1, 5, "red")),
+        *((1, 1, "green"), (1, 4, "blue")),
+    )
+    for side, bay, color in curtains:
+        x, yaw = -HALF_X + (bay + 0.5) * BAY, (1 + side) * QUARTER
+        yield Place(f"curtain_{color}", x, SPRING - 0.17, side * HALF_Z, yaw)
+    for k, side in product(range(3), (-1, 1)):
+        color = COLORS[(k + (1 - side) // 2) % 3]
+        z, yaw = side * (HALF_Z - 0.52), (1 + side) * QUARTER
+        yield Place(f"banner_{color}", 2 * (k - 1) * BAY, EAVES - 0.08, z, yaw)
     for side, color in ((-1, "blue"), (1, "green")):
         yield Place(f"banner_{color}", side * (HALF_X - 0.52), EAVES - 0.08, 0.0, -side * QUARTER)
 
@@ -146,4 +143,4 @@ def _props() -> Iterator[Place]:
 def places() -> list[Place]:
     """Every node of the scene, in a fixed order."""
     once = [Place("shell", 0.0, 0.0, 0.0)]
-    return [*once, *_architecture(), *_cloth(), *_props()]
+    return [*once, *_architecture(), *_ceilings(), *_cloth(), *_props()]

@@ -38,8 +38,12 @@ CLOTH = Material(
 
 def _cloth(color: RGB) -> Material:
     return Material(
-        color, CLOTH.roughness, image=CLOTH.image, metres_per_tile=CLOTH.metres_per_tile,
-        crease_degrees=CLOTH.crease_degrees, double_sided=True,
+        color,
+        CLOTH.roughness,
+        image=CLOTH.image,
+        metres_per_tile=CLOTH.metres_per_tile,
+        crease_degrees=CLOTH.crease_degrees,
+        double_sided=True,
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,7 +41,7 @@ class Soup:
         return Soup(self.position[:, ::-1], self.uv[:, ::-1])
 
     def box_mapped(self) -> Soup:
-        """The soup with uv in metres from its dominant axis: level across for walls, xz for floors."""
+        """The soup with uv in metres along its dominant plane: level on walls, xz on floors."""
         face_normal = np.cross(
             self.position[:, 1] - self.position[:, 0], self.position[:, 2] - self.position[:, 0]
         )
@@ -72,9 +73,7 @@ class Mesh:
 
 def join(*soups: Soup) -> Soup:
     """All triangles of `soups` as one soup."""
-    return Soup(
-        np.concatenate([s.position for s in soups]), np.concatenate([s.uv for s in soups])
-    )
+    return Soup(np.concatenate([s.position for s in soups]), np.concatenate([s.uv for s in soups]))
 
 
 def triangles(position: F64, uv: F64 | None = None) -> Soup:
@@ -106,7 +105,7 @@ def _weld_ids(position: F64) -> NDArray[np.int64]:
 
 
 def is_closed(soup: Soup) -> bool:
-    """Whether every edge is walked as often one way as the other: no open border, no flipped face."""
+    """Whether every edge is walked as often one way as the other: no border, no flipped face."""
     ids = _weld_ids(soup.position)
     edges = np.concatenate([ids[:, [0, 1]], ids[:, [1, 2]], ids[:, [2, 0]]])
     span = int(ids.max()) + 1
@@ -135,7 +134,7 @@ def indexed(soup: Soup, crease_degrees: float, metres_per_tile: float) -> Mesh:
     starts = np.searchsorted(ids[order], np.arange(ids.max() + 2))
     normal = np.empty((len(ids), 3))
     limit = np.cos(np.radians(crease_degrees)) - 1e-9
-    for first, last in zip(starts[:-1], starts[1:], strict=True):
+    for first, last in pairwise(starts):
         corners = order[first:last]
         faces = corners // 3
         near = unit[faces] @ unit[faces].T >= limit

@@ -14,18 +14,20 @@ def banner(width: float, drop: float, folds: float, depth: float, seed: int) -> 
     u, v = np.linspace(0.0, 1.0, 26), np.linspace(0.0, 1.0, 20)
     phase, drift = rng.uniform(0.0, 2.0 * np.pi, 3), rng.uniform(0.6, 1.4, 3)
     grow = (0.25 + 0.75 * v)[None, :]
+    harmonics = zip((0.6, 0.3, 0.15), (1.0, 1.9, 3.1), phase, drift, strict=True)
     wave = sum(
         amplitude * np.sin(2.0 * np.pi * folds * rate * u[:, None] + p + d * v[None, :])
-        for amplitude, rate, p, d in zip((0.6, 0.3, 0.15), (1.0, 1.9, 3.1), phase, drift, strict=True)
+        for amplitude, rate, p, d in harmonics
     )
     z = depth * grow * wave + 0.12 * depth * np.sin(3.0 * np.pi * v)[None, :]
     x = width * (u[:, None] - 0.5) * (1.0 - 0.06 * np.sin(np.pi * v)[None, :] ** 2)
-    y = -drop * v[None, :] - 0.1 * width * (v[None, :] ** 6) * np.cos(2.0 * np.pi * (u[:, None] - 0.5))
+    hem = 0.1 * width * np.cos(2.0 * np.pi * (u[:, None] - 0.5))
+    y = -drop * v[None, :] - hem * v[None, :] ** 6
     return _cloth(x, y, z, width, drop)
 
 
 def curtain(width: float, drop: float, seed: int) -> Soup:
-    """A gathered curtain on a rod along x from 0 to `width`, tied back at two thirds of its drop."""
+    """A gathered curtain on a rod along x = 0 .. `width`, tied back at two thirds of its drop."""
     rng = np.random.default_rng(seed)
     u, v = np.linspace(0.0, 1.0, 34), np.linspace(0.0, 1.0, 17)
     tie = np.exp(-(((v - 0.66) / 0.2) ** 2))
@@ -58,8 +60,16 @@ def _cloth(x: F64, y: F64, z: F64, width: float, drop: float) -> Soup:
 def rod(length: float) -> Soup:
     """A curtain rod along x from 0 to `length`, with knobs."""
     turned = revolve(
-        [(0.0, -0.06), (0.04, -0.04), (0.04, 0.0), (0.018, 0.02), (0.018, length - 0.02)]
-        + [(0.04, length), (0.04, length + 0.04), (0.0, length + 0.06)],
+        [
+            (0.0, -0.06),
+            (0.04, -0.04),
+            (0.04, 0.0),
+            (0.018, 0.02),
+            (0.018, length - 0.02),
+            (0.04, length),
+            (0.04, length + 0.04),
+            (0.0, length + 0.06),
+        ],
         8,
     )
     lying = turned.position[..., [1, 0, 2]] * np.array([1.0, -1.0, 1.0])
@@ -143,8 +153,12 @@ def molten_metal(seed: int) -> Soup:
 def crystal(height: float, radius: float, sides: int) -> Soup:
     """A double-pointed crystal about the origin."""
     return revolve(
-        [(0.0, -0.5 * height), (radius, -0.14 * height), (radius * 0.9, 0.2 * height)]
-        + [(0.0, 0.5 * height)],
+        [
+            (0.0, -0.5 * height),
+            (radius, -0.14 * height),
+            (radius * 0.9, 0.2 * height),
+            (0.0, 0.5 * height),
+        ],
         sides,
     )
 
@@ -205,7 +219,15 @@ def lantern_frame() -> Soup:
     return join(
         revolve([(0.0, -0.82), (0.012, -0.82), (0.012, 0.02), (0.0, 0.02)], 6),
         revolve(
-            [(0.0, -0.94), (0.17, -0.94), (0.17, -0.91), (0.06, -0.82), (0.02, -0.76), (0.0, -0.76)], 8
+            [
+                (0.0, -0.94),
+                (0.17, -0.94),
+                (0.17, -0.91),
+                (0.06, -0.82),
+                (0.02, -0.76),
+                (0.0, -0.76),
+            ],
+            8,
         ),
         revolve([(0.0, -1.34), (0.07, -1.32), (0.13, -1.27), (0.13, -1.24), (0.0, -1.24)], 8),
         *(

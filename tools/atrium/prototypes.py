@@ -31,23 +31,48 @@ def shell() -> Parts:
     edge = 0.38
     court = box((2 * (HALF_X - edge), 0.4, 2 * (HALF_Z - edge)), (0.0, -0.2, 0.0))
     string_course = ring(
-        [(-0.22, 4.26), (-0.22, LOGGIA), (-0.47, LOGGIA), (-0.47, 4.53), (-0.42, 4.50)]
-        + [(-0.38, 4.42), (-0.31, 4.38), (-0.28, 4.26)],
+        [
+            (-0.22, 4.26),
+            (-0.22, LOGGIA),
+            (-0.47, LOGGIA),
+            (-0.47, 4.53),
+            (-0.42, 4.50),
+            (-0.38, 4.42),
+            (-0.31, 4.38),
+            (-0.28, 4.26),
+        ],
         HALF_X,
         HALF_Z,
     )
     cornice = ring(
-        [(-0.15, 8.02), (-0.15, EAVES), (0.3, EAVES), (0.3, 8.45), (-0.62, 8.45), (-0.62, 8.37)]
-        + [(-0.54, 8.33), (-0.50, 8.24), (-0.43, 8.20), (-0.43, 8.13), (-0.28, 8.13)]
-        + [(-0.24, 8.02)],
+        [
+            (-0.15, 8.02),
+            (-0.15, EAVES),
+            (0.3, EAVES),
+            (0.3, 8.45),
+            (-0.62, 8.45),
+            (-0.62, 8.37),
+            (-0.54, 8.33),
+            (-0.50, 8.24),
+            (-0.43, 8.20),
+            (-0.43, 8.13),
+            (-0.28, 8.13),
+            (-0.24, 8.02),
+        ],
         HALF_X,
         HALF_Z,
     )
     wall_top = 8.45
     outer = BAY + WALL_THICKNESS
     roof = ring(
-        [(-0.72, wall_top), (outer, wall_top), (outer + 0.15, wall_top), (outer + 0.15, 9.75)]
-        + [(outer, 9.75), (-0.72, 8.57)],
+        [
+            (-0.72, wall_top),
+            (outer, wall_top),
+            (outer + 0.15, wall_top),
+            (outer + 0.15, 9.75),
+            (outer, 9.75),
+            (-0.72, 8.57),
+        ],
         HALF_X,
         HALF_Z,
     )
@@ -137,8 +162,17 @@ def crystal_shrine() -> Parts:
     """Glowing crystals that grow from a dark pedestal, facing +z."""
     rng = np.random.default_rng(9)
     foot = revolve(
-        [(0.0, 0.0), (0.62, 0.0), (0.62, 0.14), (0.42, 0.24), (0.36, 0.62), (0.50, 0.80)]
-        + [(0.52, 0.90), (0.30, 0.98), (0.0, 1.02)],
+        [
+            (0.0, 0.0),
+            (0.62, 0.0),
+            (0.62, 0.14),
+            (0.42, 0.24),
+            (0.36, 0.62),
+            (0.50, 0.80),
+            (0.52, 0.90),
+            (0.30, 0.98),
+            (0.0, 1.02),
+        ],
         10,
     )
     shards = [props.crystal(1.5, 0.2, 6).moved(y=1.6)]
@@ -148,7 +182,7 @@ def crystal_shrine() -> Parts:
         shard = props.crystal(size, 0.13 * size + 0.03, 6)
         c, s = np.cos(lean), np.sin(lean)
         tilt = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-        leaning = Soup((shard.position + [0.0, 0.4 * size, 0.0]) @ tilt.T, shard.uv)
+        leaning = Soup(shard.moved(y=0.4 * size).position @ tilt.T, shard.uv)
         turn = (k + rng.uniform(-0.25, 0.25)) * 2.0 * np.pi / 7.0
         shards.append(leaning.moved(x=0.1, y=0.9).turned_y(turn))
     return [("dark_stone", foot), ("crystal", join(*shards))]
@@ -167,8 +201,15 @@ def planter() -> Parts:
 def medallion() -> Parts:
     """A bronze boss on the spandrel's court face."""
     turned = revolve(
-        [(0.0, -0.04), (0.25, -0.04), (0.25, 0.02), (0.20, 0.05), (0.17, 0.025), (0.10, 0.03)]
-        + [(0.0, 0.08)],
+        [
+            (0.0, -0.04),
+            (0.25, -0.04),
+            (0.25, 0.02),
+            (0.20, 0.05),
+            (0.17, 0.025),
+            (0.10, 0.03),
+            (0.0, 0.08),
+        ],
         14,
     )
     facing = turned.position[..., [0, 2, 1]] * np.array([1.0, -1.0, 1.0])

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import product
+from itertools import pairwise, product
 
 import numpy as np
+from numpy.typing import NDArray
 
 from atrium.mesh import F64, Soup, join, sheet, triangles
 
@@ -18,9 +19,9 @@ def box(size: Sequence[float], centre: Sequence[float], chamfer: float = 0.0) ->
     half, middle = np.array(size) / 2.0, np.array(centre)
     faces: list[F64] = []
 
-    def corner(signs: Sequence[int], flat: int) -> F64:
+    def corner(signs: NDArray[np.int64], flat: int) -> F64:
         inset = np.where(np.arange(3) == flat, 0.0, chamfer)
-        return np.asarray(np.array(signs) * (half - inset))
+        return np.asarray(signs * (half - inset))
 
     def add(*points: F64) -> None:
         outline = np.array(points)
@@ -30,12 +31,12 @@ def box(size: Sequence[float], centre: Sequence[float], chamfer: float = 0.0) ->
 
     for axis, side in product(range(3), (-1, 1)):
         b, c = (axis + 1) % 3, (axis + 2) % 3
-        signs = np.empty((4, 3), dtype=int)
+        signs = np.empty((4, 3), dtype=np.int64)
         signs[:, axis], signs[:, b], signs[:, c] = side, [-1, 1, 1, -1], [-1, -1, 1, 1]
         add(*(corner(s, axis) for s in signs))
         if chamfer > 0.0:
             for other in (-1, 1):  # the edge between this face and the next axis' face
-                ends = np.empty((2, 3), dtype=int)
+                ends = np.empty((2, 3), dtype=np.int64)
                 ends[:, axis], ends[:, b], ends[:, c] = side, other, [-1, 1]
                 add(
                     corner(ends[0], axis),
@@ -44,13 +45,13 @@ def box(size: Sequence[float], centre: Sequence[float], chamfer: float = 0.0) ->
                     corner(ends[0], b),
                 )
     if chamfer > 0.0:
-        for signs3 in product((-1, 1), repeat=3):
-            add(*(corner(signs3, axis) for axis in range(3)))
+        for octant in np.array(list(product((-1, 1), repeat=3))):
+            add(*(corner(octant, axis) for axis in range(3)))
     return triangles(np.array(faces) + middle)
 
 
 def revolve(profile: Sequence[tuple[float, float]], segments: int) -> Soup:
-    """The profile (radius, height), bottom to top, turned about y; closed where it ends at radius 0."""
+    """A profile (radius, height), bottom to top, turned about y; closed if it ends at radius 0."""
     line = np.array(profile, dtype=np.float64)
     angle = np.linspace(0.0, 2.0 * np.pi, segments + 1)
     circle = np.stack([np.cos(angle), np.zeros_like(angle), -np.sin(angle)], axis=1)
@@ -73,11 +74,9 @@ def ring(profile: Sequence[tuple[float, float]], half_x: float, half_z: float) -
     girth = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
     sides: list[Soup] = []
     corners = [(1, 1), (1, -1), (-1, -1), (-1, 1), (1, 1)]
-    for (ax, az), (bx, bz) in zip(corners[:-1], corners[1:], strict=True):
+    for (ax, az), (bx, bz) in pairwise(corners):
         ends = [
-            np.stack(
-                [sx * (half_x + line[:, 0]), line[:, 1], sz * (half_z + line[:, 0])], axis=1
-            )
+            np.stack([sx * (half_x + line[:, 0]), line[:, 1], sz * (half_z + line[:, 0])], axis=1)
             for sx, sz in ((ax, az), (bx, bz))
         ]
         along = 2 if ax == bx else 0
@@ -139,7 +138,7 @@ def voussoirs(inner: float, outer: float, depth: float, count: int, gap: float) 
             arc(outer, 3, start - half_joint, stop + half_joint),
             depth,
         )
-        for start, stop in zip(edges[:-1], edges[1:], strict=True)
+        for start, stop in pairwise(edges)
     ]
 
 

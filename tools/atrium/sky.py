@@ -9,11 +9,11 @@ from atrium.textures import noise
 
 WIDTH, HEIGHT = 256, 128
 SUN_DIRECTION = (-0.76, 0.66, 0.42)
-"""Towards the sun, not normalized; the same as in atrium.toml, where the light's own way is named."""
+"""Towards the sun, not normalized; atrium.toml names the opposite, the way its light travels."""
 
 
 def sky_radiance() -> F64:
-    """Equirectangular radiance (HEIGHT, WIDTH, 3): blue zenith, warm horizon towards the sun, clouds.
+    """Equirectangular radiance (HEIGHT, WIDTH, 3): blue zenith, warm towards the sun, clouds.
 
     Row 0 looks up, the middle column along -z, as `elemental.scene.model.Environment` has it.
     """

@@ -33,9 +33,7 @@ def _grid() -> tuple[F64, F64]:
 def _srgb(linear: F64) -> F64:
     """IEC 61966-2-1 encoding."""
     clipped = np.clip(linear, 0.0, 1.0)
-    return np.where(
-        clipped <= 0.0031308, 12.92 * clipped, 1.055 * clipped ** (1.0 / 2.4) - 0.055
-    )
+    return np.where(clipped <= 0.0031308, 12.92 * clipped, 1.055 * clipped ** (1.0 / 2.4) - 0.055)
 
 
 def _jpeg(image: F64, quality: int = 86) -> bytes:
@@ -140,7 +138,7 @@ def marble_floor() -> tuple[F64, F64]:
 
 def wood() -> tuple[F64, F64]:
     """Planks along u, four a tile: relative colour, height in metres."""
-    u, v = _grid()
+    _, v = _grid()
     plank = np.floor(v * 4.0)
     offset = 40 * plank.astype(int)
     rows = np.arange(SIZE)[:, None]
