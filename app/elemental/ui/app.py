@@ -223,12 +223,13 @@ class App:
             draw_message(self._message)
 
     def _figures(self, size: tuple[int, int], frame: Frame) -> Figures:
-        passes = dict(self.averages.values)
+        passes, settings = dict(self.averages.values), self.stage.settings
         return Figures(
             scene=self.stage.scene.name,
             driver=self.device.info.renderer,
             view=self.view,
             size=size,
+            voxels=settings["gi.resolution"] if settings["gi.enabled"] else 0,
             frame_ms=passes.pop("frame", 0.0),
             cpu_ms=self._cpu_ms,
             passes=passes,

@@ -33,6 +33,8 @@ class Figures:
     driver: str
     view: str
     size: tuple[int, int]
+    voxels: int
+    """Lattice points a side of the octree, 0 without indirect light."""
     frame_ms: float
     """From one picture to the next."""
     cpu_ms: float
@@ -53,7 +55,8 @@ def draw_hud(figures: Figures) -> None:
     """The panel at the top left."""
     _begin("hud", (MARGIN_PX, MARGIN_PX), (0.0, 0.0))
     width, height = figures.size
-    imgui.text_unformatted(f"{figures.scene}  {width}x{height}  {figures.view}")
+    voxels = f"  {figures.voxels}³ voxels" if figures.voxels else ""
+    imgui.text_unformatted(f"{figures.scene}  {width}x{height}{voxels}  {figures.view}")
     _colored(GREY, figures.driver)
     rate = 1e3 / figures.frame_ms if figures.frame_ms > 0 else 0.0
     imgui.text_unformatted(
