@@ -60,6 +60,7 @@ class _Laid(NamedTuple):
     given: tuple[int, ...]
     """Shape that a caller gives; for a matrix (rows, columns)."""
     matrix: bool = False
+    array: bool = False
 
 
 class Layouts:
@@ -175,9 +176,8 @@ class Layouts:
         shape, given = laid.shape, (member.extent, *laid.given)
         if laid.dtype.fields is None and not laid.matrix and stride > laid.size:
             shape = (stride // 4,)
-        return _Laid(
-            align, stride * member.extent, laid.dtype, (member.extent, *shape), given, laid.matrix
-        )
+        size, shape = stride * member.extent, (member.extent, *shape)
+        return _Laid(align, size, laid.dtype, shape, given, laid.matrix, array=True)
 
     def _type(self, name: str, rule: str) -> _Laid:
         if name in _SCALARS:
