@@ -24,25 +24,26 @@ class ParamRing:
         self._segment = 0
         self._chunks: list[bytes] = []
         self._offsets: dict[bytes, int] = {}
-        self._used = 0
+        self.used = 0
+        """Bytes of the frame so far."""
         self._buffer: Buffer | None = None
 
     def add(self, raw: bytes) -> int:
         """Offset of ``raw`` in the frame's segment; equal bytes are stored once."""
         offset = self._offsets.get(raw)
         if offset is None:
-            offset = self._offsets[raw] = self._used
+            offset = self._offsets[raw] = self.used
             padding = -len(raw) % self.alignment
             self._chunks.append(raw + bytes(padding))
-            self._used += len(raw) + padding
+            self.used += len(raw) + padding
         return offset
 
     def upload(self) -> tuple[int, int]:
         """Upload the frame's blocks. (GL buffer name, byte offset of the segment)."""
-        if self._buffer is None or self._used > self._capacity:
+        if self._buffer is None or self.used > self._capacity:
             if self._buffer is not None:
                 self._buffer.release()
-            while self._capacity < self._used:
+            while self._capacity < self.used:
                 self._capacity *= 2
             self._buffer = self._device.buffer("params", self._capacity * _SEGMENTS)
         self._segment = (self._segment + 1) % _SEGMENTS
@@ -56,7 +57,7 @@ class ParamRing:
         """Forget the blocks of the frame that was begun."""
         self._chunks.clear()
         self._offsets.clear()
-        self._used = 0
+        self.used = 0
 
     def release(self) -> None:
         """Free the buffer."""
