@@ -41,7 +41,7 @@ class Sources:
         size = "layout(local_size_x = {}, local_size_y = {}, local_size_z = {}) in;".format(*local)
         return Compute(self.file(f"{size}\n{head}\nvoid main() {{\n{body}\n}}\n", "comp"), defines)
 
-    def full_screen(self, body: str, head: str = "layout(location = 0) out vec4 o_color;") -> Raster:
+    def full_screen(self, body: str, head: str = "out vec4 o_color;") -> Raster:
         """A full-screen fragment program; ``v_uv`` runs from 0 to 1."""
         fragment = f"in vec2 v_uv;\n{head}\nvoid main() {{\n{body}\n}}\n"
         return Raster(self.file(FULL_SCREEN, "vert"), self.file(fragment, "frag"))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from gpu.sources import Sources
 
 from elemental.core.layout import layouts, pack
 from elemental.gpu.binding import GraphError
@@ -14,6 +13,7 @@ from elemental.gpu.graph import Graph
 from elemental.gpu.plan import PlanError
 from elemental.gpu.refs import Sampled, TextureHandle
 from elemental.gpu.shaders import Compute, Raster, ShaderError
+from gpu.sources import Sources
 
 STORE = "layout(rgba16f) writeonly uniform image2D o_image;"
 LOCAL = (8, 8, 1)
@@ -158,8 +158,8 @@ def test_names_are_checked(device: Device, fill: Compute, double: Raster) -> Non
         graph.compute(fill, reads={"o_image": image}, threads=8)
     with pytest.raises(GraphError, match="u_image is given in writes, but a sampler"):
         graph.raster(double, color=image, writes={"u_image": image})
+    volume = graph.texture("volume", (8, 8, 8), RGBA16F)
     with pytest.raises(GraphError, match="u_image is 2D, volume is 3D"):
-        volume = graph.texture("volume", (8, 8, 8), RGBA16F)
         graph.raster(double, color=image, reads={"u_image": volume})
     with pytest.raises(GraphError, match="one of threads, groups and indirect"):
         graph.compute(fill, writes={"o_image": image})

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from gpu.sources import Sources
 
 from elemental.core.layout import Layouts, layouts, pack
 from elemental.gpu.device import Device
 from elemental.gpu.program import buffer_variables
 from elemental.gpu.shaders import flatten
+from gpu.sources import Sources
 
 AWKWARD = """
 struct Inner { vec3 axis; float tail; mat2 turn; };
@@ -142,7 +142,8 @@ def test_packed_values_arrive(device: Device, sources: Sources, tmp_path: Path) 
             float(u_uneasy.pair.y), u_uneasy.last.tail, u_uneasy.flag ? 1.0 : 0.0, u_uneasy.head);
         for (int i = 0; i < 10; ++i) result[i] = all[i];
         """,
-        f'#include "{known.files["Uneasy"]}"\nlayout(std430) buffer Result {{ float result[10]; }};',
+        f'#include "{known.files["Uneasy"]}"\n'
+        "layout(std430) buffer Result { float result[10]; };",
         local=(1, 1, 1),
     )
     result = device.buffer("result", 40)

@@ -89,14 +89,21 @@ class Device:
     # Resources ---------------------------------------------------------------------------------
 
     def buffer(
-        self, name: str, contents: npt.NDArray[Any] | bytes | int, category: str = "other"
+        self,
+        name: str,
+        contents: npt.NDArray[Any] | bytes | int,
+        category: str = "other",
+        dynamic: bool | None = None,
     ) -> Buffer:
-        """A persistent buffer of ``contents``, or of so many undefined bytes."""
+        """A persistent buffer of ``contents``, or of so many undefined bytes.
+
+        ``dynamic``: it is written again and again (by default, where no contents are given);
+        drivers warn of such writes to a buffer that was made with static contents.
+        """
         if isinstance(contents, (int, np.integer)):
-            return Buffer(self, name, max(int(contents), 4), None, category)
+            return Buffer(self, name, max(int(contents), 4), category, dynamic is not False)
         raw = contents if isinstance(contents, bytes) else np.ascontiguousarray(contents).tobytes()
-        raw = raw or bytes(4)
-        return Buffer(self, name, len(raw), raw, category)
+        return Buffer(self, name, raw or bytes(4), category, bool(dynamic))
 
     def texture(
         self,

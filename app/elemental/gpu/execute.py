@@ -64,7 +64,7 @@ class Executor:
         if isinstance(description, TextureDesc):
             return Texture(self.device, "target", description, "targets")
         assert isinstance(description, int)
-        return Buffer(self.device, "scratch", description, None, "targets")
+        return Buffer(self.device, "scratch", description, "targets")
 
     # Frames ------------------------------------------------------------------------------------
 

@@ -249,15 +249,22 @@ class Buffer:
         "serial", "written_at",
     )  # fmt: skip
 
-    def __init__(self, device: Device, name: str, nbytes: int, raw: Any, category: str) -> None:
+    def __init__(
+        self,
+        device: Device,
+        name: str,
+        contents: bytes | int,
+        category: str,
+        dynamic: bool = True,
+    ) -> None:
+        nbytes = contents if isinstance(contents, int) else len(contents)
         self.device, self.name, self.nbytes, self.category = device, name, nbytes, category
         self.serial = next(_serial)
         self.graph: object = None
         self.index = -1
         self.written_at = self.access_at = 0
-        self.mgl: moderngl.Buffer = (
-            device.ctx.buffer(reserve=nbytes) if raw is None else device.ctx.buffer(raw)
-        )
+        given: dict[str, Any] = {"reserve" if isinstance(contents, int) else "data": contents}
+        self.mgl: moderngl.Buffer = device.ctx.buffer(**given, dynamic=dynamic)
         self.glo: int = self.mgl.glo
         device.gl.label(c.LABEL_BUFFER, self.glo, name)
         device.allocated(self, nbytes)
