@@ -1,4 +1,4 @@
-"""Builds small glTF files in code: `GltfBuilder().add(...)`, then `.write(path)`."""
+"""Builds small glTF files in code: `GltfBuilder().add(...)`, then `.write` or `.load`."""
 
 from __future__ import annotations
 
@@ -12,6 +12,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import PIL.Image
+
+from elemental.scene.load import load_scene
+from elemental.scene.model import Scene
 
 Array = npt.NDArray[Any]
 Json = dict[str, Any]
@@ -55,7 +58,7 @@ class GltfBuilder:
         return self.append("bufferViews", view)
 
     def accessor(self, array: Array, **more: Any) -> int:
-        """An accessor of (N, width) or (N,) values; bool flags such as normalized=True in `more`."""
+        """An accessor of (N, width) or (N,) values; `more` is JSON such as normalized=True."""
         array = np.asarray(array)
         accessor = {
             "bufferView": self.view(array.tobytes()),
@@ -103,7 +106,7 @@ class GltfBuilder:
         return index
 
     def add(self, positions: Array, indices: Array | None = None, **more: Any) -> int:
-        """A node with a mesh of one primitive; keys that `primitive` does not know go to the node."""
+        """A node with a mesh of one primitive; what `primitive` does not know is the node's."""
         known = {"material", "mode", *ATTRIBUTE_NAME}
         primitive = {key: more.pop(key) for key in list(more) if key in known}
         return self.node(mesh=self.mesh(self.primitive(positions, indices, **primitive)), **more)
@@ -190,3 +193,7 @@ class GltfBuilder:
         """Write .glb or .gltf, as the name says."""
         path.write_bytes(self.gltf() if path.suffix == ".gltf" else self.glb())
         return path
+
+    def load(self, folder: Path, name: str = "scene.glb", *, default_lights: bool = False) -> Scene:
+        """Write the file into `folder` and load it."""
+        return load_scene(self.write(folder / name), default_lights=default_lights)

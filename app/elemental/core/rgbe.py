@@ -137,7 +137,9 @@ def _decode_row(body: bytes, at: int, width: int) -> tuple[bytearray, int]:
                 else:
                     row += body[at + 1 : at + 1 + count]
                     at += 1 + count
-                if count == 0 or at > len(body):
+                if at > len(body):
+                    raise IndexError
+                if count == 0:
                     raise ValueError("the run-length encoding is broken")
             if len(row) > end:
                 raise ValueError("a run crosses the end of its scanline")
