@@ -64,7 +64,7 @@ MATERIALS: dict[str, Material] = {
     "cloth_red": _cloth((0.62, 0.035, 0.025)),
     "cloth_green": _cloth((0.045, 0.36, 0.07)),
     "cloth_blue": _cloth((0.03, 0.10, 0.55)),
-    "melt": Material((0.02, 0.02, 0.02), 0.6, glow=(18.0, 8.0, 2.4), image="melt"),
+    "melt": Material((0.02, 0.02, 0.02), 0.6, glow=(12.0, 4.6, 1.1), image="melt"),
     "crystal": Material((0.10, 0.30, 0.35), 0.15, glow=(0.3, 2.0, 2.6), crease_degrees=5.0),
     "lantern": Material((0.8, 0.6, 0.3), 0.6, glow=(6.0, 3.4, 1.3)),
 }

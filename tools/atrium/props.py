@@ -29,7 +29,7 @@ def banner(width: float, drop: float, folds: float, depth: float, seed: int) -> 
 def curtain(width: float, drop: float, seed: int) -> Soup:
     """A gathered curtain on a rod along x = 0 .. `width`, tied back at two thirds of its drop."""
     rng = np.random.default_rng(seed)
-    u, v = np.linspace(0.0, 1.0, 34), np.linspace(0.0, 1.0, 17)
+    u, v = np.linspace(0.0, 1.0, 31), np.linspace(0.0, 1.0, 17)
     tie = np.exp(-(((v - 0.66) / 0.2) ** 2))
     span = 0.72 - 0.46 * tie - 0.14 * v
     lean = 0.10 * tie
@@ -80,7 +80,7 @@ def forge_base() -> Soup:
     """The forge's stone foot: two octagonal steps and a turned pedestal, 1.0 m tall."""
     steps = [
         revolve([(0.0, y), (r, y), (r, y + 0.16), (r - 0.03, y + 0.19), (0.0, y + 0.19)], 8)
-        for r, y in ((1.75, -0.01), (1.4, 0.18))
+        for r, y in ((2.1, -0.01), (1.35, 0.18))
     ]
     pedestal = revolve(
         [
@@ -138,7 +138,7 @@ def molten_metal(seed: int) -> Soup:
     for _ in range(7):
         direction, rate, phase = rng.uniform(0, 2 * np.pi), rng.uniform(3, 11), rng.uniform(0, 6)
         heave += np.sin(rate * (x * np.cos(direction) + z * np.sin(direction)) + phase) / rate
-    y = 1.53 + 0.07 * heave * (1.0 - (radius / 0.98) ** 4)
+    y = 1.56 + 0.07 * heave * (1.0 - (radius / 0.98) ** 4)
     points = np.stack([x, y, z], axis=-1)
     points[:, -1] = points[:, 0]
     points[0] = np.array([0.0, y[0, 0], 0.0])
@@ -148,6 +148,19 @@ def molten_metal(seed: int) -> Soup:
     shell = np.stack([points[-1], floor[-1]])
     uv = np.stack(np.broadcast_arrays(points[..., 0], points[..., 2]), axis=-1)
     return join(sheet(points, uv), sheet(shell), sheet(floor).flipped())
+
+
+def molten_streams() -> Soup:
+    """Four streams that run over the bowl's rim into a glowing ring on the lower step."""
+    inner = np.array(
+        [[0.90, 1.55], [1.06, 1.63], [1.20, 1.62], [1.25, 1.50], [1.31, 1.0], [1.38, 0.2]]
+    )
+    outer = inner + np.array(
+        [[0.0, 0.05], [0.0, 0.05], [0.03, 0.05], [0.06, 0.02], [0.06, 0.0], [0.09, 0.02]]
+    )
+    stream = thick_strip(inner, outer, 0.10)
+    profile = [(1.42, 0.15), (1.70, 0.15), (1.70, 0.21), (1.56, 0.235), (1.42, 0.21), (1.42, 0.15)]
+    return join(*(stream.turned_y((k + 0.5) * np.pi / 2.0) for k in range(4)), revolve(profile, 40))
 
 
 def crystal(height: float, radius: float, sides: int) -> Soup:

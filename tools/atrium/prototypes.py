@@ -154,7 +154,7 @@ def forge() -> Parts:
     return [
         ("dark_stone", props.forge_base()),
         ("bronze", props.forge_bowl()),
-        ("melt", props.molten_metal(5)),
+        ("melt", join(props.molten_metal(5), props.molten_streams())),
     ]
 
 
@@ -194,7 +194,7 @@ def planter() -> Parts:
     return [
         ("pottery", props.planter()),
         ("leaves_dark", props.shrub_core(radius).moved(y=centre)),
-        ("leaves", props.leaves(radius, 340, 7).moved(y=centre)),
+        ("leaves", props.leaves(radius, 280, 7).moved(y=centre)),
     ]
 
 
