@@ -1,7 +1,7 @@
 // A voxel's HDR value towards each side, wherever it is kept: leaves derive theirs from radiance and
 // normal, the other levels keep filtered ones. [Mittring12 "Generate directionally dependent voxel"]
 
-#include "lib/octree_build.glsl"
+#include "lib/lattice.glsl"
 #include "lib/octree.glsl"
 #include "lib/ambient_cube.glsl"
 

@@ -1,7 +1,7 @@
 // Light that bounced: a voxel gathers the octree's previous radiance. Beyond [Mittring12], whose
 // voxels receive direct light only. GATHER=0 leaves it out.
 
-#include "lib/octree_build.glsl"
+#include "lib/lattice.glsl"
 
 #ifndef GATHER
 #define GATHER 0

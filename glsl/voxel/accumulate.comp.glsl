@@ -1,6 +1,6 @@
 // Adds every fragment to its voxel in integers, so the sums do not depend on the order.
 
-#include "lib/octree_build.glsl"
+#include "lib/regions.glsl"
 #include "lib/octree.glsl"
 #include "lib/packing.glsl"
 

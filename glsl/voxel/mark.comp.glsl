@@ -1,6 +1,7 @@
 // Sets the bit of every lattice point that a fragment fell on.
 
-#include "lib/octree_build.glsl"
+#include "lib/node_bits.glsl"
+#include "lib/regions.glsl"
 
 layout(local_size_x = 128) in;
 

@@ -1,7 +1,7 @@
 // Writes the nodes and the bricks' places: every word by one thread, from ranks alone.
 // [Mittring12 "Sparse Voxel Octree": fully maintained on GPU]
 
-#include "lib/octree_build.glsl"
+#include "lib/lattice.glsl"
 #include "lib/node_ranks.glsl"
 
 layout(local_size_x = 64) in;

@@ -2,7 +2,8 @@
 // occupied points of the next coarser lattice. A node exists exactly where a lookup in it, border
 // included, can differ from empty, so empty nodes can be skipped without a jump.
 
-#include "lib/octree_build.glsl"
+#include "lib/node_bits.glsl"
+#include "lib/regions.glsl"
 #include "shared/octree_level.glsl"
 
 layout(local_size_x = 64) in;

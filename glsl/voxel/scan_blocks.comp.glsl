@@ -1,7 +1,6 @@
 // Prefix sum over 64-node blocks, first part: ranks inside groups of SCAN_BLOCKS blocks.
 // x counts bricks (existing nodes), y tiles (sibling groups below the dense levels).
 
-#include "lib/octree_build.glsl"
 #include "lib/node_counts.glsl"
 
 layout(local_size_x = 256) in;

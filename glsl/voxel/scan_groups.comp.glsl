@@ -1,12 +1,10 @@
 // Prefix sum over 64-node blocks, second part: the groups' sums, the totals, and the arguments of
 // every later indirect dispatch. One work group.
 
-#include "lib/octree_build.glsl"
 #include "lib/node_counts.glsl"
 
 layout(local_size_x = 256) in;
 
-layout(std430) readonly buffer NodeBits { uint node_words[]; };
 layout(std430) readonly buffer Ranks { uvec2 ranks[]; };
 layout(std430) buffer GroupSums { uvec2 group_sums[]; };
 layout(std430) buffer State { OctreeState octree_state; };
@@ -58,7 +56,9 @@ void main() {
     uint before_leaves = bricks_before_level(u_octree.coarsest_leaf, all.x);
     uint before_finest = bricks_before_level(u_octree.leaf_level, all.x);
     uint kept = min(all.x, u_octree.brick_capacity);
-    kept = min(kept, before_leaves + u_octree.leaf_capacity);
+    if (kept > before_leaves && kept - before_leaves > u_octree.leaf_capacity) {
+        kept = before_leaves + u_octree.leaf_capacity;
+    }
     if (before_finest > u_octree.interior_capacity) kept = min(kept, u_octree.interior_capacity);
     octree_state.brick_count = kept;
     octree_state.brick_dropped = all.x - kept;

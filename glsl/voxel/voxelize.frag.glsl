@@ -3,7 +3,7 @@
 
 #include "shared/octree.glsl"
 #include "shared/voxelize.glsl"
-#include "lib/octree_build.glsl"
+#include "lib/lattice.glsl"
 #include "lib/material.glsl"
 #include "lib/packing.glsl"
 

@@ -71,7 +71,7 @@ def find_nodes(
             f"reduce.{level}",
             reads={"Regions": octree.regions},
             writes={"Points": points, "NodeBits": node_bits},
-            params={"OctreeLevel": level_params(level)},
+            params={**octree.params, "OctreeLevel": level_params(level)},
             threads=grid_block_count(level + 1),
         )
     group_blocks = int(layouts().constant("SCAN_BLOCKS"))

@@ -96,6 +96,13 @@ def atlas_size(bricks: int, side_log2: int) -> tuple[int, int, int]:
     return side * BRICK_TEXELS[0], side * BRICK_TEXELS[1], layers * BRICK_TEXELS[2]
 
 
+def _empty_state() -> np.ndarray[tuple[int, ...], np.dtype[np.void]]:
+    """An OctreeState before the first fragment: its dispatch grows in x alone."""
+    state = np.zeros((), layouts().struct("OctreeState"))
+    state["fragments"]["y"] = state["fragments"]["z"] = 1
+    return state
+
+
 class Survey:
     """What counting needs of an octree, without its pools: grid, state, regions, uniform block.
 
@@ -110,6 +117,7 @@ class Survey:
         self.max_emission = max_emission
         self.regions = device.buffer("octree.regions", grid.region_levels.ravel(), category=CATEGORY)
         self.state = device.buffer("octree.state", _struct_bytes("OctreeState"), category=CATEGORY)
+        self.empty_state = device.buffer("octree.empty_state", _empty_state(), category=CATEGORY)
         self.params: dict[str, Block] = {"Octree": self._pack(ATLAS_SIDES_LOG2[0], (1.0, 1.0, 1.0))}
 
     def _pack(self, atlas_side_log2: int, atlas_texel: tuple[float, ...]) -> Block:
@@ -137,8 +145,8 @@ class Survey:
 
     def release(self) -> None:
         """Free what it holds on the device."""
-        self.regions.release()
-        self.state.release()
+        for buffer in (self.regions, self.state, self.empty_state):
+            buffer.release()
 
 
 class Octree(Survey):

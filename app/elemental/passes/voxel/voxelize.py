@@ -28,7 +28,7 @@ def voxelize(g: Graph, scene: GpuScene, octree: Survey) -> BufferHandle:
     Seen along each of the three axes, so that the surface separates its sides: no path of
     face-connected empty voxels crosses it. What the queue can't hold is counted, not written.
     """
-    g.clear_buffer(octree.state)
+    g.copy_buffer(octree.empty_state, octree.state)
     nbytes = octree.capacity.fragments * layouts().struct("VoxelFragment").itemsize
     fragments = g.buffer("voxel.fragments", nbytes)
     side = octree.grid.resolution

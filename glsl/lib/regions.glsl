@@ -1,7 +1,7 @@
-// What the building stages share: lattice coordinates, regions, ranks of bricks and tiles.
+// The leaf level of each region of the octree's cube.
+// [Mittring12 "Sparse Voxel Octree": mapping function allows locally higher resolution]
 
-#include "shared/octree.glsl"
-#include "lib/node_bits.glsl"
+#include "lib/lattice.glsl"
 
 // Leaf level of each of the REGION_SIDE^3 regions, x fastest.
 layout(std430) readonly buffer Regions { uint region_leaf_level[]; };
@@ -17,15 +17,6 @@ int leaf_level_of_cell(uvec3 cell, int level) {
                                          : cell << uint(region_level - level);
     return int(region_leaf_level[region_index(region)]);
 }
-
-uint pack_position(uvec3 p) { return p.x | (p.y << 10) | (p.z << 20); }
-uvec3 unpack_position(uint code) { return uvec3(code, code >> 10, code >> 20) & 0x3ffu; }
-
-uint pack_cell(uvec3 cell, int level, bool leaf) {
-    return cell.x | (cell.y << 9) | (cell.z << 18) | (uint(level) << 27) | (leaf ? BRICK_LEAF : 0u);
-}
-uvec3 unpack_cell(uint code) { return uvec3(code, code >> 9, code >> 18) & 0x1ffu; }
-int unpack_cell_level(uint code) { return int((code >> 27) & 15u); }
 
 // A fragment's point on the lattice of its region's leaf level. Rounds, but stays in its region.
 uvec3 leaf_point(uvec3 finest_point, out int level) {
