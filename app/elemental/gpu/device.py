@@ -148,7 +148,6 @@ class Device:
                 self.log.drop_out_of_memory()
         else:
             error = 0
-        self.executor.texture_unit_changed()
         self._bytes[resource.category] += nbytes
         over = self.memory_budget is not None and sum(self._bytes.values()) > self.memory_budget
         if error == c.OUT_OF_MEMORY or over:
@@ -164,10 +163,10 @@ class Device:
         if isinstance(resource, Texture):
             self.executor.framebuffers.forget(resource.serial)
 
-    def bind_for_update(self, texture: Texture) -> None:
-        """Bind a texture to the unit that no pass uses."""
+    def bind_for_update(self, target: int, glo: int) -> None:
+        """Bind a texture to the unit that no pass uses, for allocation, upload or read-back."""
         self.gl.glActiveTexture(c.TEXTURE0 + self.scratch_unit)
-        self.gl.glBindTexture(texture.target, texture.glo)
+        self.gl.glBindTexture(target, glo)
         self.executor.texture_unit_changed()
 
     def bytes(self) -> dict[str, int]:

@@ -35,7 +35,7 @@ class Encoder:
     def __init__(self, executor: Executor, node: RasterPass) -> None:
         self._executor, self._node = executor, node
         self._missing = set(node.missing)
-        self._seen: set[int] = set()
+        self._seen: set[tuple[int, int]] = set()
 
     def bind(self, name: str, ref: Ref) -> None:
         """Bind a texture or buffer that changes between draws. Raises GraphError.
@@ -103,8 +103,8 @@ class Encoder:
         serial = 0
         if vertex_input is not None:
             serial = vertex_input.serial
-            if serial not in self._seen:
-                self._seen.add(serial)
+            if (serial, 0) not in self._seen:
+                self._seen.add((serial, 0))
                 for buffer, _, _ in vertex_input.content:
                     self._read(buffer, c.VERTEX_ATTRIB_ARRAY_BARRIER)
                 if vertex_input.index is not None:
@@ -116,8 +116,8 @@ class Encoder:
         return vertex_array
 
     def _read(self, buffer: Buffer, bit: int) -> None:
-        if buffer.serial not in self._seen:
-            self._seen.add(buffer.serial)
+        if (buffer.serial, bit) not in self._seen:
+            self._seen.add((buffer.serial, bit))
             self._executor.barrier([(buffer, bit, False)])
 
     def _make(self, program: Any, vertex_input: VertexInput | None) -> moderngl.VertexArray:
@@ -127,7 +127,8 @@ class Encoder:
         content = [(buffer.mgl, layout, *names) for buffer, layout, names in vertex_input.content]
         index = vertex_input.index.mgl if vertex_input.index else None
         given = {name for _, _, names in vertex_input.content for name in names}
-        wanted = {name for name in program if isinstance(program[name], moderngl.Attribute)}
+        attributes = {name for name in program if isinstance(program[name], moderngl.Attribute)}
+        wanted = {name for name in attributes if not name.startswith("gl_")}
         if wanted - given:
             missing = ", ".join(sorted(wanted - given))
             raise GraphError(f"{self._node.program.shader!r}: attribute {missing} not given")

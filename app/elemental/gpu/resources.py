@@ -124,8 +124,7 @@ class Texture(_Shaped):
         self.written_at = self.access_at = 0
         gl = device.gl
         self.glo = gl.generate("Textures")
-        gl.glActiveTexture(c.TEXTURE0 + device.scratch_unit)
-        gl.glBindTexture(self.target, self.glo)
+        device.bind_for_update(self.target, self.glo)
         internal = desc.format.internal
         if self.target in (c.TEXTURE_2D, c.TEXTURE_CUBE_MAP):
             gl.glTexStorage2D(self.target, desc.mips, internal, *desc.size)
@@ -160,8 +159,7 @@ class Texture(_Shaped):
             first, count = (0, slices) if layer < 0 else (layer, 1)
             internal = self.desc.format.internal
             gl.glTextureView(glo, target, self.glo, internal, level, levels, first, count)
-            gl.glActiveTexture(c.TEXTURE0 + self.device.scratch_unit)
-            gl.glBindTexture(target, glo)
+            self.device.bind_for_update(target, glo)
             if stencil:
                 gl.glTexParameteri(target, c.DEPTH_STENCIL_TEXTURE_MODE, c.STENCIL_INDEX)
             gl.label(c.LABEL_TEXTURE, glo, f"{self.name} view")
@@ -181,7 +179,7 @@ class Texture(_Shaped):
         expected = size[0] * size[1] * depth * fmt.channels * fmt.dtype.itemsize
         if len(raw) != expected:
             raise ValueError(f"texture {self.name}: {len(raw)} bytes given, {expected} needed")
-        self.device.bind_for_update(self)
+        self.device.bind_for_update(self.target, self.glo)
         gl.glPixelStorei(c.UNPACK_ALIGNMENT, 1)
         gl.glMemoryBarrier(c.TEXTURE_UPDATE_BARRIER)
         kind = (fmt.transfer, fmt.transfer_type)
@@ -200,7 +198,7 @@ class Texture(_Shaped):
 
     def generate_mips(self) -> None:
         """Fill levels 1 and up by the driver's box filter."""
-        self.device.bind_for_update(self)
+        self.device.bind_for_update(self.target, self.glo)
         self.device.gl.glMemoryBarrier(c.TEXTURE_UPDATE_BARRIER | c.TEXTURE_FETCH_BARRIER)
         self.device.gl.glGenerateMipmap(self.target)
 
@@ -214,7 +212,7 @@ class Texture(_Shaped):
         shape = (slices, height, width, fmt.channels)
         pixels = np.empty(shape, fmt.dtype)
         gl.glMemoryBarrier(c.ALL_BARRIERS)
-        self.device.bind_for_update(self)
+        self.device.bind_for_update(self.target, self.glo)
         gl.glPixelStorei(c.PACK_ALIGNMENT, 1)
         kind = (fmt.transfer, fmt.transfer_type)
         if self.target == c.TEXTURE_CUBE_MAP:
