@@ -10,7 +10,7 @@ from elemental.gpu.graph import Graph
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.voxel import sizing
 from elemental.passes.voxel.build import build
-from elemental.passes.voxel.grid import Grid
+from elemental.passes.voxel.grid import Grid, dense_node_count
 from elemental.passes.voxel.light import compress, filter_levels, light_voxels
 from elemental.passes.voxel.octree import Capacity, Counts, Octree
 from elemental.passes.voxel.voxelize import voxelize
@@ -94,6 +94,20 @@ class VoxelLighting:
         octree = self.octree
         self.octree = Octree(self.device, octree.grid, self._wanted(), octree.max_emission)
         octree.release()
+
+    def counters(self) -> dict[str, int]:
+        """What the newest counted build holds and what it had to drop."""
+        counts, grid = self.counts, self.octree.grid
+        return {
+            "voxel_fragments": counts.fragments,
+            "voxel_fragments_dropped": counts.fragments_dropped,
+            "octree_nodes": dense_node_count(grid.top_level) + 8 * counts.tiles,
+            "octree_nodes_dropped": 8 * counts.tiles_dropped,
+            "octree_bricks": counts.bricks,
+            "octree_bricks_dropped": counts.bricks_dropped,
+            "octree_leaf_bricks": counts.leaves,
+            "octree_resolution": grid.resolution,
+        }
 
     def release(self) -> None:
         """Free the octree."""

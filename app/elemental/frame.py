@@ -1,0 +1,196 @@
+"""One frame on one page, in the talk's order. The only file that sees every pass. [Mittring12]"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from elemental.core.layout import Block
+from elemental.gpu.device import Device
+from elemental.gpu.graph import Graph
+from elemental.gpu.refs import TextureHandle
+from elemental.gpu.resources import Texture
+from elemental.passes.camera_view import pack_view
+from elemental.passes.cone_trace.diffuse import combine_diffuse, trace_diffuse
+from elemental.passes.cone_trace.specular import trace_specular
+from elemental.passes.gbuffer import GBuffer, draw_gbuffer
+from elemental.passes.post.fxaa import fxaa
+from elemental.passes.post.tonemap import tonemap
+from elemental.passes.scene_gpu import GpuScene
+from elemental.passes.shade import shade
+from elemental.passes.shadow import ShadowMaps, update_shadows
+from elemental.passes.shadow_plan import ShadowSettings
+from elemental.passes.sky import Sky
+from elemental.passes.views import CHANNELS, LIGHT_VIEWS, light_view, surface_view
+from elemental.passes.voxel import sizing
+from elemental.passes.voxel.grid import Grid
+from elemental.passes.voxel.lighting import VoxelLighting
+from elemental.passes.voxel.octree import Octree
+from elemental.passes.voxel.view import voxel_view
+from elemental.scene.model import Camera, Scene
+from elemental.settings import Settings
+
+MIB = 1 << 20
+
+VIEWS: Mapping[str, str] = {
+    "final": "the finished picture",
+    "scene_color": "scene-referred linear radiance: no exposure, no post",
+    **CHANNELS,
+    **LIGHT_VIEWS,
+    "diffuse_gi": "indirect irradiance / pi, linear",
+    "specular_gi": "indirect radiance along the mirrored eye vector, linear",
+    "voxels": "the octree's voxels at the level of voxels.level, linear",
+}
+"""View name -> help."""
+
+LINEAR_VIEWS = frozenset({"scene_color", "diffuse_gi", "specular_gi", "voxels", *LIGHT_VIEWS})
+OCTREE_VIEWS = frozenset({"diffuse_gi", "specular_gi", "voxels"})
+
+
+@dataclass
+class Frame:
+    """A rendered frame. ``image`` stays valid until the next one; row 0 is at the bottom."""
+
+    image: Texture
+    is_linear: bool
+    voxels: VoxelLighting | None
+
+    @property
+    def counters(self) -> dict[str, int]:
+        """The octree's counts, as far as the GPU has reported: complete after Device.finish."""
+        return {} if self.voxels is None else self.voxels.counters()
+
+
+class Renderer:
+    """A scene on the device, and how a frame of it is made. ``size`` is (width, height) in pixels."""
+
+    def __init__(
+        self, device: Device, scene: Scene, settings: Settings, size: tuple[int, int]
+    ) -> None:
+        self.device = device
+        self.scene = scene
+        self.settings = settings
+        self.size = size
+        self._meshes = GpuScene(device, scene)
+        self._shadows = ShadowMaps(device, _shadow_settings(settings))
+        self._sky = Sky(device)
+        self._voxels: VoxelLighting | None = None
+
+    def resize(self, size: tuple[int, int]) -> None:
+        """Draw the next frame at ``size``."""
+        self.size = (max(size[0], 1), max(size[1], 1))
+
+    def invalidate(self, what: str) -> None:
+        """Rebuild the voxels of the "geometry", or only their "light", with the next frame."""
+        if self._voxels is not None:
+            self._voxels.invalidate(what)
+
+    def render(self, camera: Camera, time_s: float, frame: int, view: str = "final") -> Frame:
+        """One frame as seen by ``camera``; ``view`` is one of VIEWS."""
+        voxels = self._prepare_voxels(view)
+        g = self.device.begin_frame()
+        image = self._declare(g, camera, time_s, frame, view, voxels)
+        g.keep(image)
+        g.execute()
+        assert image.physical is not None, "a kept handle has a texture once its graph has run"
+        return Frame(image.physical, view in LINEAR_VIEWS, voxels)
+
+    def _declare(
+        self,
+        g: Graph,
+        camera: Camera,
+        time_s: float,
+        frame: int,
+        view_name: str,
+        voxels: VoxelLighting | None,
+    ) -> TextureHandle:
+        """The passes of a frame. What the asked-for image does not need, the graph leaves out."""
+        s = self.settings
+        exposure = 2.0 ** s["exposure"]
+        view = pack_view(
+            camera, self.size, self._meshes.bounds, exposure=exposure, time_s=time_s, frame=frame
+        )
+        environment = self.scene.environment if s["sky.enabled"] else None
+        sky = self._sky.update(g, environment, s["sky.intensity"])
+        shadows = update_shadows(
+            g, self._shadows, self._meshes, self.scene.lights, camera=camera, size=self.size
+        )
+        octree: Octree | None = None
+        if voxels is not None:
+            light_key = (shadows.light_key, sky.key)
+            octree = voxels.update(g, shadows, sky, light_key, s["gi.bounces"])
+        if view_name == "voxels" and octree is not None:
+            return voxel_view(g, view, octree, self.size, s["voxels.level"])
+
+        gb = draw_gbuffer(g, view, self._meshes, self.size)
+        if view_name in CHANNELS:
+            return surface_view(g, view, gb, view_name)
+        if view_name in LIGHT_VIEWS:
+            return light_view(g, view, gb, shadows, view_name)
+        diffuse_gi = specular_gi = None
+        if octree is not None:
+            diffuse_gi, specular_gi = self._indirect(g, view, gb, octree, sky)
+        if view_name == "diffuse_gi" and diffuse_gi is not None:
+            return diffuse_gi
+        if view_name == "specular_gi" and specular_gi is not None:
+            return specular_gi
+        scene_color = shade(
+            g,
+            view,
+            gb,
+            shadows,
+            sky=sky if environment is not None else None,
+            diffuse_gi=diffuse_gi,
+            specular_gi=specular_gi if s["gi.specular"] else None,
+        )
+        if view_name == "scene_color":
+            return scene_color
+        image = tonemap(g, view, scene_color)
+        return fxaa(g, view, image) if s["fxaa.enabled"] else image
+
+    def _indirect(
+        self, g: Graph, view: Block, gb: GBuffer, octree: Octree, sky: Sky
+    ) -> tuple[TextureHandle, TextureHandle]:
+        """(irradiance / pi, radiance along the mirrored eye vector)."""
+        radiance = trace_diffuse(g, view, gb, octree, sky)
+        diffuse_gi = combine_diffuse(g, view, gb, radiance)
+        return diffuse_gi, trace_specular(g, view, gb, octree, sky)
+
+    def _prepare_voxels(self, view: str) -> VoxelLighting | None:
+        """The octree, counted and allocated when it is first needed."""
+        if not self.settings["gi.enabled"] and view not in OCTREE_VIEWS:
+            return None
+        if self._voxels is None:
+            s = self.settings
+            self._voxels = VoxelLighting(
+                self.device,
+                self._meshes,
+                Grid.fit(self._meshes.bounds, s["gi.resolution"]),
+                area_m2=sizing.projected_area(self.scene),
+                max_emission=sizing.max_emission(self.scene),
+                budget_bytes=s["gi.memory_budget_mb"] * MIB,
+            )
+        return self._voxels
+
+    def read(self, frame: Frame) -> npt.NDArray[Any]:
+        """(H, W, 4) float32 of a linear frame, uint8 display codes of another; row 0 on top."""
+        return np.flipud(frame.image.read())
+
+    def release(self) -> None:
+        """Free everything on the device."""
+        if self._voxels is not None:
+            self._voxels.release()
+        self._sky.release()
+        self._shadows.release()
+
+
+def _shadow_settings(settings: Settings) -> ShadowSettings:
+    return ShadowSettings(
+        resolution=settings["shadow.resolution"],
+        cascades=settings["shadow.cascades"],
+        reach=settings["shadow.distance"],
+    )
