@@ -10,8 +10,9 @@ uniform sampler2DArrayShadow u_shadow_local;
 
 // Half width of the 3x3 tent's footprint, in texels, along the diagonal.
 const float SHADOW_KERNEL_RADIUS = 2.1213;
-// Least share of that offset: a shading normal may lean away from the geometric one.
-const float SHADOW_OFFSET_FLOOR = 0.25;
+// Added to the sine of the angle to the light: a shading normal may lean away from the geometric
+// one, and where a thin wall meets a floor the filter must not reach past the wall's foot.
+const float SHADOW_OFFSET_BASE = 0.5;
 
 // Texels at a cascade's rim that the filter and the offset may need.
 const float SHADOW_CASCADE_MARGIN = 4.0;
@@ -62,7 +63,7 @@ float view_visibility(ShadowView view, vec3 p_ws, vec3 n_ws, vec3 to_light, floa
     float sine = sqrt(clamp(1.0 - cosine * cosine, 0.0, 1.0));
     float radius_m = SHADOW_KERNEL_RADIUS * view.texel * abs(w);
     vec3 side = cosine < 0.0 ? -n_ws : n_ws;
-    vec3 receiver = p_ws + side * (radius_m * max(sine, SHADOW_OFFSET_FLOOR)) + n_ws * offset_m;
+    vec3 receiver = p_ws + side * (radius_m * (sine + SHADOW_OFFSET_BASE)) + n_ws * offset_m;
     vec4 p = view.clip_from_world * vec4(receiver, 1.0);
     if (p.w <= 0.0) return 1.0;
     vec3 coordinate = p.xyz / p.w * 0.5 + 0.5;

@@ -23,6 +23,7 @@ OPAQUE: tuple[AlphaMode, ...] = ("opaque",)
 MASKED: tuple[AlphaMode, ...] = ("mask",)
 SOLID: tuple[AlphaMode, ...] = ("opaque", "mask")
 """Surfaces that the G-buffer holds."""
+BLEND: tuple[AlphaMode, ...] = ("blend",)
 
 SLOTS = ("base_color", "metallic_roughness", "normal", "occlusion", "emissive")
 """Texture slots, in the order of SLOT_* in glsl/shared/material.glsl."""
@@ -75,6 +76,8 @@ class Batch:
     double_sided: bool
     textures: tuple[int, ...]
     """Texture numbers by SLOTS, -1 where a slot is empty."""
+    instance: int
+    """The only instance of a blended batch, else -1."""
 
     @property
     def textured(self) -> bool:
@@ -171,11 +174,11 @@ def pack_draws(scene: Scene, geometry: Geometry) -> tuple[Array, Array, list[Bat
     """(commands (D,) DRAW_COMMAND, instance numbers (N,) uint32 in draw order, batches).
 
     Commands of one batch, and batches of one alpha mode, lie together; instances of one mesh share
-    a command.
+    a command, but a blended one is a batch of its own, to be sorted.
     """
     numbers = range(len(scene.instances))
     mesh_of = [instance.mesh for instance in scene.instances]
-    keys = [_batch_key(scene, mesh) for mesh in mesh_of]
+    keys = [_batch_key(scene, number) for number in numbers]
     order = sorted(numbers, key=lambda number: (keys[number], mesh_of[number], number))
     commands: list[tuple[int, int, int, int, int]] = []
     batches: list[Batch] = []
@@ -191,8 +194,17 @@ def pack_draws(scene: Scene, geometry: Geometry) -> tuple[Array, Array, list[Bat
     return np.array(commands, DRAW_COMMAND), np.array(order, "<u4"), batches
 
 
-def _batch_key(scene: Scene, mesh: int) -> tuple[int, bool, tuple[int, ...]]:
-    """(place in CATEGORIES, double-sided, textures by slot)."""
-    material = scene.materials[scene.meshes[mesh].material]
+def instance_center(scene: Scene, number: int) -> Array:
+    """(3,) middle of an instance's bounding box, m."""
+    instance = scene.instances[number]
+    positions = scene.meshes[instance.mesh].positions
+    points = transforms.transform_points(instance.world_from_local, positions)
+    return np.asarray((points.min(axis=0) + points.max(axis=0)) / 2)
+
+
+def _batch_key(scene: Scene, number: int) -> tuple[int, bool, tuple[int, ...], int]:
+    """(place in CATEGORIES, double-sided, textures by slot, the instance if it is blended)."""
+    material = scene.materials[scene.meshes[scene.instances[number].mesh].material]
     textures = tuple(-1 if s is None else s.texture for s in texture_slots(material))
-    return CATEGORIES.index(material.alpha_mode), material.double_sided, textures
+    alone = number if material.alpha_mode == "blend" else -1
+    return CATEGORIES.index(material.alpha_mode), material.double_sided, textures, alone

@@ -1,0 +1,58 @@
+"""Translucent surfaces over the shaded scene: sorted by instance, lit and shadowed.
+
+[Mittring12 "GBuffer": "one forward pass"]
+"""
+
+from __future__ import annotations
+
+from elemental.core.layout import Block
+from elemental.gpu.encode import Encoder
+from elemental.gpu.graph import Graph
+from elemental.gpu.refs import Ref, TextureHandle
+from elemental.gpu.shaders import Raster
+from elemental.gpu.state import RasterState
+from elemental.passes.gbuffer import VERT, GBuffer
+from elemental.passes.scene_gpu import GpuScene
+from elemental.passes.scene_pack import BLEND
+from elemental.passes.shadow import ShadowMaps
+from elemental.passes.sky import Sky
+
+FRAG = "forward/forward.frag.glsl"
+VARIANTS = {gi: Raster(VERT, FRAG, defines={"GI": gi}) for gi in (0, 1)}
+STATE = RasterState(cull="back", depth_test="lequal", depth_write=False, blend="premultiplied")
+
+
+def draw_translucent(
+    g: Graph,
+    view: Block,
+    gb: GBuffer,
+    scene: GpuScene,
+    shadows: ShadowMaps,
+    *,
+    sky: Sky,
+    diffuse_gi: TextureHandle | None = None,
+) -> TextureHandle:
+    """Blend the scene's translucent instances onto `gb.scene_color`, the farthest first.
+
+    diffuse_gi: (H, W) irradiance / pi, a: visibility of the sky, of the surfaces behind.
+    """
+    if not scene.batches(BLEND):
+        return gb.scene_color
+    reads: dict[str, Ref] = {"Instances": scene.instances, "Materials": scene.materials}
+    reads |= {**shadows.reads(), **sky.reads()}
+    if diffuse_gi is not None:
+        reads["u_diffuse_gi"] = diffuse_gi
+
+    def draw(enc: Encoder) -> None:
+        scene.draw(enc, BLEND, eye=view["eye_ws"])
+
+    g.raster(
+        VARIANTS[int(diffuse_gi is not None)],
+        color=gb.scene_color,
+        depth=gb.depth,
+        reads=reads,
+        params={"View": view, **shadows.params(), **sky.params()},
+        state=STATE,
+        draw=draw,
+    )
+    return gb.scene_color

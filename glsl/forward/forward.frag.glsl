@@ -1,0 +1,50 @@
+// One translucent surface, lit like the opaque ones, over what is behind it (premultiplied). Its
+// indirect light is borrowed: diffuse from the surface behind, specular from the sky as far as that
+// surface sees it.
+#ifndef GI
+#define GI 1
+#endif
+
+#include "lib/direct.glsl"
+#include "lib/material.glsl"
+#include "lib/sky.glsl"
+#include "lib/tangent_space.glsl"
+#include "lib/view.glsl"
+
+#if GI
+uniform sampler2D u_diffuse_gi;  // irradiance / pi; a: visibility of the sky
+#endif
+
+in vec3 v_normal_ws;
+in vec4 v_tangent_ws;
+in vec2 v_uv0;
+in vec2 v_uv1;
+in vec4 v_color;
+flat in uint v_material;
+
+layout(location = 0) out vec4 o_radiance;
+
+vec3 shade_translucent(Surface s, vec3 n_ws, vec3 p_ws) {
+    vec3 to_eye = normalize(u_view.eye_ws - p_ws);
+    DirectLight direct = direct_light(
+        ShadingPoint(p_ws, n_ws, to_eye, s.albedo, s.specular_color, s.specular_power));
+    vec3 radiance = s.emissive + direct.diffuse + direct.specular;
+#if GI
+    vec4 diffuse_gi = texelFetch(u_diffuse_gi, ivec2(gl_FragCoord.xy), 0);
+    vec3 mirrored = sky_radiance(reflect(-to_eye, n_ws), specular_cone_half_angle(s.specular_power));
+    float n_o_v = clamp(dot(n_ws, to_eye), 0.0, 1.0);
+    radiance += diffuse_gi.rgb * s.albedo * s.ambient_occlusion;
+    radiance += mirrored * clamp(diffuse_gi.a, 0.0, 1.0) * s.ambient_occlusion
+        * environment_brdf(s.specular_color, s.roughness, n_o_v);
+#endif
+    return radiance;
+}
+
+void main() {
+    Surface s = evaluate_material(v_material, v_uv0, v_uv1, v_color);
+    float facing = gl_FrontFacing ? 1.0 : -1.0;
+    vec3 n_ws = normal_from_tangent_space(s.normal_ts, v_normal_ws, v_tangent_ws, facing);
+    vec3 p_ws = position_ws_at(gl_FragCoord.xy * u_view.viewport_px.zw, gl_FragCoord.z);
+    vec3 radiance = s.lighting_model == LIGHTING_UNLIT ? s.emissive : shade_translucent(s, n_ws, p_ws);
+    o_radiance = vec4(radiance * s.opacity, s.opacity);
+}
