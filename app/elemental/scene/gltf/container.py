@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import binascii
 import json
 import re
 import struct
@@ -13,7 +12,7 @@ from urllib.parse import unquote, unquote_to_bytes
 
 from elemental.core.errors import InputError
 from elemental.core.files import read_file
-from elemental.scene.gltf.fields import Field, Report
+from elemental.scene.gltf.fields import Field, Report, printable
 
 GLB_MAGIC = b"glTF"
 GLB_HEADER = struct.Struct("<4sII")
@@ -66,13 +65,14 @@ class Document:
 
     def resolve(self, uri: Field) -> bytes:
         """The bytes that a URI names: a data URI's own, or those of a file beside this one."""
-        text = uri.raw if isinstance(uri.raw, str) else uri.text()
+        shown = uri.text()
+        text: str = uri.raw
         if text.startswith("data:"):
             return _decode_data_uri(uri, text)
         if _SCHEME.match(text):
-            raise uri.error(f"{text[:60]!r} is not a file; only files and data: URIs are read")
+            raise uri.error(f"{shown[:60]!r} is not a file; only files and data: URIs are read")
         name = unquote(text)
-        return read_file(self.path.parent / name, self.path, f"{uri.path}: {name}")
+        return read_file(self.path.parent / name, self.path, f"{uri.path}: {printable(name)}")
 
     def _read_buffer(self, index: int) -> bytes:
         buffer = self.buffers[index]
@@ -132,9 +132,9 @@ def _decode_data_uri(uri: Field, text: str) -> bytes:
     header, comma, body = text.partition(",")
     if not comma:
         raise uri.error("the data: URI has no comma")
-    if not header.endswith(";base64"):
-        return unquote_to_bytes(body)
     try:
+        if not header.endswith(";base64"):
+            return unquote_to_bytes(body)
         return base64.b64decode(unquote(body), validate=True)
-    except (binascii.Error, ValueError) as error:
-        raise uri.error(f"the data: URI is no valid base64 ({error})") from error
+    except ValueError as error:
+        raise uri.error(f"the data: URI is broken ({error})") from error

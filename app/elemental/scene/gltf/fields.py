@@ -103,9 +103,7 @@ class Field:
         """A string; what can't be printed (control characters, lone surrogates) becomes `?`."""
         if not isinstance(self.raw, str):
             raise self._expected("a string")
-        if self.raw.isprintable():
-            return self.raw
-        return "".join(c if c.isprintable() else "?" for c in self.raw)
+        return printable(self.raw)
 
     def number(self, low: float = -FLOAT32_MAX, high: float = FLOAT32_MAX) -> float:
         """A finite number in low..high."""
@@ -195,6 +193,11 @@ class Field:
         if found.raw not in choices:
             raise found._expected("one of " + ", ".join(map(str, choices)))
         return choices[found.raw]
+
+
+def printable(text: str) -> str:
+    """`text` with `?` for control characters and lone surrogates."""
+    return "".join(c if c.isprintable() else "?" for c in text)
 
 
 def _between(low: float, high: float) -> str:

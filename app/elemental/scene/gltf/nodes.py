@@ -14,6 +14,7 @@ from elemental.scene.gltf.fields import Field
 from elemental.scene.model import FloatArray
 
 AFFINE_ROW = (0.0, 0.0, 0.0, 1.0)
+AFFINE_TOLERANCE = 1e-5
 SINGULAR_VOLUME = 1e-9
 """Least volume of a transformed unit cube, as a part of its edges' product, that still counts as
 three-dimensional [inferred]."""
@@ -106,7 +107,7 @@ def _local_matrix(node: Field) -> npt.NDArray[np.float64]:
     matrix = node.find("matrix")
     if matrix is not None:
         m = matrix.numbers(16).reshape(4, 4).T.astype(np.float64)
-        if not np.allclose(m[3], AFFINE_ROW, atol=1e-6):
+        if np.abs(m[3] - AFFINE_ROW).max() > AFFINE_TOLERANCE:
             raise matrix.error("expected a last row of 0 0 0 1")
         m[3] = AFFINE_ROW
         return m

@@ -14,7 +14,7 @@ import numpy as np
 from elemental.core.errors import InputError
 from elemental.core.images import read_png_jpeg_webp
 from elemental.scene.gltf.container import Document
-from elemental.scene.gltf.fields import Field
+from elemental.scene.gltf.fields import Field, printable
 from elemental.scene.model import ByteArray, FloatArray, Texture, TextureSlot, Wrap
 
 WRAPS: dict[int, Wrap] = {10497: "repeat", 33071: "clamp", 33648: "mirror"}
@@ -119,7 +119,9 @@ class Textures:
     def _image_name(self, image: int) -> str:
         field = self._images[image]
         uri = field.text_or("uri", "data:")
-        return field.text_or("name", f"image{image}") if uri.startswith("data:") else unquote(uri)
+        if uri.startswith("data:"):
+            return field.text_or("name", f"image{image}")
+        return printable(unquote(uri))
 
     def _sampler_of(self, texture: Field) -> Sampler:
         index = texture.index_or_none("sampler", len(self._samplers), "samplers")

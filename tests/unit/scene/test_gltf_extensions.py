@@ -1,0 +1,121 @@
+"""Draco, and extensions that can't be honoured."""
+
+from __future__ import annotations
+
+import builtins
+from pathlib import Path
+from typing import Any
+
+import DracoPy
+import numpy as np
+import pytest
+
+import shapes
+from elemental.core.errors import InputError
+from elemental.scene.model import Mesh
+from gltf_builder import GltfBuilder
+
+TRIANGLE = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32)
+DRACO = "KHR_draco_mesh_compression"
+
+
+def draco_builder() -> GltfBuilder:
+    """A sphere of radius 1 with normals, compressed as exporters write it."""
+    positions, indices = shapes.sphere()
+    encoded = DracoPy.encode(
+        positions, indices.reshape(-1, 3), quantization_bits=14,
+        normals=positions.astype(np.float64),
+    )  # fmt: skip
+    attributes = {a["attribute_type"]: a["unique_id"] for a in DracoPy.decode(encoded).attributes}
+    builder = GltfBuilder()
+    builder.extend(DRACO, required=True)
+    layout = {"componentType": 5126, "count": len(positions), "type": "VEC3"}
+    accessors = [builder.append("accessors", layout) for _ in range(2)]
+    count = {"componentType": 5125, "count": len(indices), "type": "SCALAR"}
+    extension = {
+        "bufferView": builder.view(encoded),
+        "attributes": {"POSITION": attributes[0], "NORMAL": attributes[1]},
+    }
+    primitive = {
+        "attributes": {"POSITION": accessors[0], "NORMAL": accessors[1]},
+        "indices": builder.append("accessors", count),
+        "extensions": {DRACO: extension},
+    }
+    builder.node(mesh=builder.mesh(primitive))
+    return builder
+
+
+def volume(mesh: Mesh) -> float:
+    a, b, c = mesh.positions[mesh.indices].reshape(-1, 3, 3).transpose(1, 0, 2)
+    return float((a * np.cross(b, c)).sum() / 6)
+
+
+def test_draco(tmp_path: Path) -> None:
+    scene = draco_builder().load(tmp_path)
+    mesh = scene.meshes[0]
+    plain = GltfBuilder()
+    plain.add(*shapes.sphere())
+    assert volume(mesh) == pytest.approx(volume(plain.load(tmp_path).meshes[0]), rel=1e-3)
+    assert (mesh.normals * mesh.positions).sum(axis=1).min() > 0.999
+    assert scene.warnings == []
+
+
+def test_draco_without_its_library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    real_import = builtins.__import__
+
+    def refuse(name: str, *rest: Any) -> Any:
+        if name == "DracoPy":
+            raise ImportError(name)
+        return real_import(name, *rest)
+
+    monkeypatch.setattr(builtins, "__import__", refuse)
+    with pytest.raises(InputError, match=r"KHR_draco_mesh_compression: needs DracoPy"):
+        draco_builder().load(tmp_path)
+
+
+def test_broken_draco(tmp_path: Path) -> None:
+    builder = draco_builder()
+    builder.buffer[:5] = b"wrong"
+    with pytest.raises(InputError, match="broken Draco data"):
+        builder.load(tmp_path)
+
+
+@pytest.mark.parametrize(
+    "name", ["EXT_meshopt_compression", "EXT_mesh_gpu_instancing", "ACME_curved_space"]
+)
+def test_required_extensions_that_may_change_geometry_are_errors(name: str, tmp_path: Path) -> None:
+    builder = GltfBuilder()
+    builder.add(TRIANGLE)
+    builder.extend(name, required=True)
+    with pytest.raises(InputError) as caught:
+        builder.load(tmp_path)
+    file = tmp_path / "scene.glb"
+    assert str(caught.value) == f"{file}: extensionsRequired[0]: {name} is not supported"
+
+
+@pytest.mark.parametrize("required", [True, False])
+def test_unsupported_materials_are_one_warning(required: bool, tmp_path: Path) -> None:
+    builder = GltfBuilder()
+    builder.add(TRIANGLE)
+    builder.extend("KHR_materials_sheen", required=required)
+    expected = "extensionsUsed: KHR_materials_sheen is not supported and ignored"
+    assert [w.partition(": ")[2] for w in builder.load(tmp_path).warnings] == [expected]
+
+
+def test_unknown_optional_extension_is_one_warning(tmp_path: Path) -> None:
+    builder = GltfBuilder()
+    builder.add(TRIANGLE)
+    builder.extend("ACME_curved_space")
+    builder.extend("KHR_xmp_json_ld")
+    assert len(builder.load(tmp_path).warnings) == 1
+
+
+def test_motion_is_said_to_stand_still(tmp_path: Path) -> None:
+    builder = GltfBuilder()
+    builder.add(TRIANGLE)
+    builder.root["animations"] = [{"channels": [], "samplers": []}]
+    builder.root["meshes"][0]["primitives"][0]["targets"] = [{"POSITION": 0}]
+    builder.root["nodes"][0]["skin"] = 0
+    warnings = " ".join(builder.load(tmp_path).warnings)
+    for word in ("animations", "morph targets", "skins"):
+        assert word in warnings
