@@ -124,7 +124,11 @@ class Device:
         desc = TextureDesc(tuple(size), format, mips, layers, cube)
         texture = Texture(self, name, desc, category)
         if data is not None:
-            texture.write(data)
+            try:
+                texture.write(data)
+            except ValueError:
+                texture.release()
+                raise
             if mips > 1:
                 texture.generate_mips()
         return texture
@@ -241,6 +245,11 @@ class Device:
     def frame_ms(self) -> float:
         """GPU time of the newest finished frame."""
         return self.timers.frame_ms
+
+    @property
+    def frames_in_flight(self) -> int:
+        """Frames handed to the driver that ``begin_frame`` has not yet seen finished."""
+        return len(self._fences)
 
     def present(self, texture: Texture, size: tuple[int, int]) -> None:
         """Copy ``texture`` onto the window's framebuffer of ``size`` pixels."""

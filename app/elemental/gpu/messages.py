@@ -68,7 +68,9 @@ class Messages:
 
     def drop_out_of_memory(self) -> None:
         """Forget the message of a failed allocation, which is reported as an exception."""
-        self._unchecked = [m for m in self._unchecked if "OUT_OF_MEMORY" not in m.text]
+        for kept in (self._unchecked, self.messages):
+            for message in [m for m in kept if "OUT_OF_MEMORY" in m.text]:
+                kept.remove(message)
 
     def release(self) -> None:
         """Stop receiving."""

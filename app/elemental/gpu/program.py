@@ -148,18 +148,19 @@ def _link(ctx: moderngl.Context, shader: Shader, sources: dict[str, Source]) -> 
         raise ShaderError(_located(str(error), sources, shader)) from None
 
 
+_HEADINGS = {"Program", "GLSL Compiler failed", "GLSL Linker failed"}
+
+
 def _located(log: str, sources: dict[str, Source], shader: Shader) -> str:
     """moderngl heads each log with ``vertex_shader`` and so on; link errors have no stage."""
     stage = next((name for name in sources if f"{name}_shader" in log.lower()), None)
+    headings = _HEADINGS | {f"{name}_shader" for name in sources}
     body = "\n".join(
         line
         for line in log.splitlines()
-        if line.strip() and not line.startswith("===") and "_shader" not in line.lower()
-        and line.strip() != "GLSL Compiler failed"
-    )  # fmt: skip
-    if stage is None:
-        return f"{shader!r}: {body.strip()}"
-    return rewrite_messages(body, sources[stage])
+        if line.strip() and line.strip().strip("=") and line.strip() not in headings
+    )
+    return f"{shader!r}: {body}" if stage is None else rewrite_messages(body, sources[stage])
 
 
 def _reflect(

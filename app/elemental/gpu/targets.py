@@ -76,6 +76,9 @@ class Framebuffers:
         else:
             gl.glFramebufferTextureLayer(c.FRAMEBUFFER, point, texture.glo, level, layer)
 
+    def __len__(self) -> int:
+        return len(self._made)
+
     def forget(self, serial: int) -> None:
         """Delete the framebuffers that hold the texture of ``serial``."""
         for key in self._holders.pop(serial, ()):

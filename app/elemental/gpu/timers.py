@@ -32,6 +32,8 @@ class PassTimers:
         self._gl = gl
         self._spare: list[int] = []
         self._pending: list[_Frame] = []
+        self.made = 0
+        """Queries made so far."""
         self.timings: list[PassTiming] = []
         """Passes of the newest finished frame."""
         self.frame_ms = 0.0
@@ -40,6 +42,7 @@ class PassTimers:
     def begin(self, count: int) -> list[int]:
         """``count + 1`` queries for a frame of ``count`` passes."""
         while len(self._spare) <= count:
+            self.made += 1
             self._spare.append(self._gl.generate("Queries"))
         queries = self._spare[: count + 1]
         del self._spare[: count + 1]
