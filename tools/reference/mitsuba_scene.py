@@ -1,0 +1,162 @@
+"""Our scene as a mitsuba scene, and its path-traced radiance.
+
+Depth. `scene_color` with gi.bounces = n holds visible emission, direct analytic light, and n
+gathers: surfaces reached by the eye's ray and then n more segments show their emission and their
+direct analytic light. Mitsuba's `max_depth` counts path segments that end on a light: 1 shows
+emitters alone, 2 adds one reflection. An emitter or the sky is itself the end of a gather, so it
+is seen over n reflections: max_depth = n + 1. A sun, point or spot light is reached from a gathered
+surface by one more segment: max_depth = n + 2. Light adds up, so the reference is the sum of two
+renderings, one with each kind of light at its own depth.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import mitsuba as mi
+import numpy as np
+
+from elemental.core import transforms
+from elemental.scene.model import Camera, FloatArray, Light, Scene
+from reference.bsdf import Entry, MaterialConverter
+from reference.ply import world_meshes, write_ply
+
+
+@dataclass(frozen=True)
+class Job:
+    """What to path-trace: image size (width, height), samples a pixel, gathers, sky factor."""
+
+    size: tuple[int, int]
+    samples: int
+    bounces: int
+    sky_intensity: float = 1.0
+
+
+def path_trace(scene: Scene, camera: Camera, job: Job, folder: Path) -> FloatArray:
+    """Linear radiance (H, W, 3) float32; meshes pass through PLY files in `folder`."""
+    surfaces = _surfaces(scene, folder)
+    area_lights = _emitting_surfaces(scene, surfaces)
+    sky = _environment(scene, job.sky_intensity)
+    punctual = {f"light{k}": _punctual(light) for k, light in enumerate(scene.lights)}
+    image = np.zeros((job.size[1], job.size[0], 3), np.float32)
+    if area_lights or sky:
+        image += _render({**surfaces, **area_lights, **sky}, camera, job, job.bounces + 1)
+    if punctual:
+        image += _render({**surfaces, **punctual}, camera, job, job.bounces + 2)
+    return image
+
+
+def emission_mask(scene: Scene, camera: Camera, job: Job, folder: Path) -> FloatArray:
+    """Where the eye meets no emission and no sky: (H, W) float32, 1 or 0."""
+    surfaces = _surfaces(scene, folder)
+    lights = {**_emitting_surfaces(scene, surfaces), "sky": {"type": "constant"}}
+    quick = Job(job.size, 1, 0)
+    image = _render({**surfaces, **lights}, camera, quick, max_depth=1)
+    return (image.max(axis=2) == 0.0).astype(np.float32)
+
+
+def _render(entries: Entry, camera: Camera, job: Job, max_depth: int) -> FloatArray:
+    integrator = {"type": "path", "max_depth": max_depth, "rr_depth": 1000}
+    whole = {
+        "type": "scene",
+        **entries,
+        "integrator": integrator,
+        "sensor": _sensor(camera, job),
+    }
+    image = np.array(mi.render(mi.load_dict(whole)), dtype=np.float32)
+    return np.asarray(image[..., :3])
+
+
+def _sensor(camera: Camera, job: Job) -> Entry:
+    world = camera.world_from_view.astype(np.float64)
+    eye, backward, up = world[:3, 3], world[:3, 2], world[:3, 1]
+    return {
+        "type": "perspective",
+        "fov": math.degrees(camera.fov_y),
+        "fov_axis": "y",
+        "near_clip": camera.near,
+        "far_clip": 1e7,
+        "to_world": mi.ScalarTransform4f().look_at(
+            origin=eye.tolist(), target=(eye - backward).tolist(), up=up.tolist()
+        ),
+        "film": {
+            "type": "hdrfilm",
+            "width": job.size[0],
+            "height": job.size[1],
+            "pixel_format": "rgb",
+            "component_format": "float32",
+            "rfilter": {"type": "box"},
+        },
+        "sampler": {"type": "independent", "sample_count": job.samples},
+    }
+
+
+def _surfaces(scene: Scene, folder: Path) -> dict[str, Entry]:
+    """One shape for each material."""
+    converter = MaterialConverter(scene)
+    uv_sets = {k: converter.uv_set(m) for k, m in enumerate(scene.materials)}
+    shapes: dict[str, Entry] = {}
+    for index, mesh in world_meshes(scene, uv_sets).items():
+        path = folder / f"material{index}.ply"
+        write_ply(path, mesh)
+        color = mesh.colors.astype(np.float32).mean(axis=0) / np.float32(255.0)
+        bsdf = converter.bsdf(scene.materials[index], color)
+        shapes[f"surface{index}"] = {"type": "ply", "filename": str(path), "bsdf": bsdf}
+    return shapes
+
+
+def _emitting_surfaces(scene: Scene, surfaces: dict[str, Entry]) -> dict[str, Entry]:
+    """The shapes that emit, with their area lights: they replace those of the same name."""
+    converter = MaterialConverter(scene)
+    found = {}
+    for index, material in enumerate(scene.materials):
+        name = f"surface{index}"
+        if name in surfaces and (material.emits or material.unlit):
+            light = {"type": "area", "radiance": converter.radiance(material)}
+            found[name] = {**surfaces[name], "emitter": light}
+    return found
+
+
+def _environment(scene: Scene, factor: float) -> dict[str, Entry]:
+    environment = scene.environment
+    if environment is None:
+        return {}
+    tint = environment.tint * np.float32(environment.intensity * factor)
+    if environment.radiance is None:
+        return {"sky": {"type": "constant", "radiance": {"type": "rgb", "value": tint.tolist()}}}
+    # Ours has -z in the middle column, mitsuba's in the first: half a turn.
+    image = np.roll(environment.radiance, environment.radiance.shape[1] // 2, axis=1) * tint
+    return {"sky": {"type": "envmap", "bitmap": mi.Bitmap(np.ascontiguousarray(image))}}
+
+
+def _punctual(light: Light) -> Entry:
+    """A sun, a point or a spot light; `range` has no counterpart, sources are points."""
+    power = {"type": "rgb", "value": (light.color * light.intensity).tolist()}
+    if light.kind == "directional":
+        direction = light.direction.tolist()
+        return {"type": "directional", "direction": direction, "irradiance": power}
+    if light.kind == "point":
+        return {"type": "point", "position": light.position.tolist(), "intensity": power}
+    return _spot(light, power)
+
+
+def _spot(light: Light, power: Entry) -> Entry:
+    """A spot light whose falloff is linear in the angle, where glTF's is squared in the cosine."""
+    aim = transforms.look_at(np.zeros(3), light.direction)
+    up = transforms.inverse(aim)[:3, 1]
+    to_world: Any = mi.ScalarTransform4f().look_at(
+        origin=light.position.tolist(),
+        target=(light.position + light.direction).tolist(),
+        up=up.tolist(),
+    )
+    outer = math.degrees(light.outer_angle)
+    return {
+        "type": "spot",
+        "to_world": to_world,
+        "intensity": power,
+        "cutoff_angle": outer,
+        "beam_width": min(math.degrees(light.inner_angle), outer * 0.999),
+    }
