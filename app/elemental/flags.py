@@ -90,7 +90,7 @@ def _add_shot_flags(parser: _Parser) -> None:
     flag("--frames", "N", _whole(1, 10**6), 1, "frames to render; the last is kept (default: 1)")
     flag("--fps", "F", _number(1e-3, 1e4), 30.0, "frames a second of scene time (default: 30)")
     flag("--time", "S", _number(0, 1e6), 0.0, "scene time of frame 0 in seconds (default: 0)")
-    flag("--seed", "K", _whole(0, 2**31 - 1), 0, "seed of all random choices (default: 0)")
+    flag("--seed", "K", _whole(0, 2**31 - 1), 0, "seed of random choices, none so far (default: 0)")
     flag("--camera", "NAME", str, None, "a camera of the scene (default: its path, else its first)")
     flag("--eye", "X,Y,Z", _vector, None, "camera position in metres (default: the camera's)")
     flag("--target", "X,Y,Z", _vector, None, "point looked at in metres (default: the camera's)")

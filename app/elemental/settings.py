@@ -134,11 +134,6 @@ _TABLE = (
         unit="gathers", lo=0, hi=8, source="[Mittring12] [Crassin11]",
     ),
     Setting(
-        "gi.intensity", "float", 1.0,
-        "factor on the indirect light; 1 is physical",
-        lo=0, hi=4, source="post-process volume: Indirect Lighting Intensity",
-    ),
-    Setting(
         "gi.memory_budget_mb", "int", 1024,
         "most memory that the octree's pools may grow to",
         unit="MiB", lo=16, hi=16384,

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import elemental
 from elemental.core.errors import InputError
 from elemental.settings import SETTINGS, Setting, Settings
 
@@ -28,6 +30,7 @@ def values_of(setting: Setting) -> st.SearchStrategy[Any]:
     return st.tuples(number, number, number) if setting.kind == "color" else number
 
 
+APP = Path(elemental.__file__).parent
 ANY_SETTING = st.sampled_from(list(SETTINGS.values()))
 TINT = Setting("test.tint", "color", (1.0, 1.0, 1.0), "a colour", lo=0, hi=1)
 
@@ -43,6 +46,12 @@ def test_a_row_is_complete_and_its_default_is_valid(setting: Setting) -> None:
         assert setting.lo is not None
         assert setting.hi is not None
         assert setting.lo < setting.hi
+
+
+def test_every_setting_is_read_somewhere() -> None:
+    sources = [p.read_text() for p in APP.rglob("*.py") if p.name != "settings.py"]
+    unread = [key for key in SETTINGS if not any(f'"{key}"' in text for text in sources)]
+    assert unread == []
 
 
 @given(st.data())

@@ -1,0 +1,106 @@
+"""Bad words and files: one line, exit code 2, nothing written."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from cli.process import assert_refused, elemental
+from cli.small_scene import BROKEN_FILES, write_corner
+
+BAD_WORDS: list[tuple[list[str], str]] = [
+    ([], "COMMAND"),
+    (["shoot"], "'shoot'"),
+    (["shot"], "-o/--output"),
+    (["shot", "-o"], "-o/--output"),
+    (["shot", "-o", "out.png", "--bogus"], "--bogus"),
+    (["shot", "-o", "out.png", "--siz", "8x8"], "--siz"),
+    (["shot", "-o", "out.png", "a.gltf", "b.gltf"], "b.gltf"),
+    (["shot", "-o", "out.png", "--size", "8"], "--size"),
+    (["shot", "-o", "out.png", "--size", "0x8"], "--size"),
+    (["shot", "-o", "out.png", "--size", "99999x8"], "--size"),
+    (["shot", "-o", "out.png", "--frames", "0"], "--frames"),
+    (["shot", "-o", "out.png", "--frames", "1.5"], "--frames"),
+    (["shot", "-o", "out.png", "--fps", "0"], "--fps"),
+    (["shot", "-o", "out.png", "--fps", "nan"], "--fps"),
+    (["shot", "-o", "out.png", "--time", "-1"], "--time"),
+    (["shot", "-o", "out.png", "--seed", "x"], "--seed"),
+    (["shot", "-o", "out.png", "--fov", "0"], "--fov"),
+    (["shot", "-o", "out.png", "--eye", "1,2"], "--eye"),
+    (["shot", "-o", "out.png", "--eye", "1,2,inf"], "--eye"),
+    (["shot", "-o", "out.png", "--target", "-1,b,2"], "--target"),
+    (["run", "--frames", "-1"], "--frames"),
+    (["run", "-o", "out.png"], "-o"),
+    (["bench", "--warmup", "-1"], "--warmup"),
+    (["bench", "--rebuild", "everything"], "--rebuild"),
+    (["list"], "what"),
+    (["list", "colours"], "'colours'"),
+    (["list", "cameras"], "SCENE"),
+    (["list", "views", "corner.gltf"], "corner.gltf"),
+]
+
+BAD_SHOTS: list[tuple[list[str], str]] = [
+    (["-o", "out.jpg"], "out.jpg"),
+    (["-o", "out"], "must end in .png or .exr"),
+    (["-o", "nowhere/out.png"], "the folder nowhere does not exist"),
+    (["-o", "folder.png"], "is a folder"),
+    (["-o", "corner.gltf/out.png"], "corner.gltf does not exist"),
+    (["-o", "out.png", "--report", "out.txt"], "--report"),
+    (["-o", "out.png", "--report", "nowhere/r.json"], "nowhere"),
+    (["-o", "out.png", "--view", "finl"], "did you mean 'final'?"),
+    (["-o", "out.png", "--set", "gi.resolution"], "expected key=value"),
+    (["-o", "out.png", "--set", "gi.resolutoin=64"], "did you mean gi.resolution?"),
+    (["-o", "out.png", "--set", "gi.resolution=65"], "64, 128, 256, 512"),
+    (["-o", "out.png", "--set", "exposure=bright"], "exposure"),
+    (["-o", "out.png", "--set", "sky.image=nowhere.hdr"], "nowhere.hdr"),
+    (["-o", "out.png", "--set", "sky.image=corner.gltf"], "corner.gltf"),
+    (["-o", "out.png", "--camera", "frnt"], "did you mean 'front'?"),
+    (["-o", "out.png", "--eye", "0,0,1"], "--target"),
+    (["-o", "out.png", "--eye", "0,0,1", "--target", "0,0,1"], "same point"),
+    (["-o", "out.png", "--camera", "front", "--eye", "0,0,1", "--target", "0,0,0"], "--camera"),
+]
+
+
+@pytest.mark.parametrize(("words", "expected"), BAD_WORDS, ids=str)
+def test_bad_words_are_refused(tmp_path: Path, words: list[str], expected: str) -> None:
+    assert_refused(elemental(*words, cwd=tmp_path), expected)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(("words", "expected"), BAD_SHOTS, ids=str)
+def test_bad_values_of_a_shot_are_refused(tmp_path: Path, words: list[str], expected: str) -> None:
+    write_corner(tmp_path)
+    (tmp_path / "folder.png").mkdir()
+    before = sorted(tmp_path.rglob("*"))
+    assert_refused(elemental("shot", "corner.gltf", *words, cwd=tmp_path), expected)
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+@pytest.mark.parametrize("name", BROKEN_FILES)
+def test_a_broken_file_is_refused_by_name(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_bytes(BROKEN_FILES[name])
+    result = elemental("shot", name, "-o", "out.png", "--report", "r.json", cwd=tmp_path)
+    assert_refused(result, name)
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+
+
+def test_a_missing_file_and_an_unknown_scene_are_refused(tmp_path: Path) -> None:
+    for name in ("nowhere.gltf", "no_such_scene", "", "."):
+        assert_refused(elemental("list", "cameras", name, cwd=tmp_path))
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
+def test_a_folder_that_cannot_be_written_is_refused(tmp_path: Path) -> None:
+    write_corner(tmp_path)
+    locked = tmp_path / "locked"
+    locked.mkdir(mode=0o500)
+    result = elemental("shot", "corner.gltf", "-o", "locked/out.png", cwd=tmp_path)
+    assert_refused(result, "can't be written")
+
+
+def test_without_a_display_a_window_is_refused(tmp_path: Path) -> None:
+    scene = write_corner(tmp_path)
+    result = elemental("run", scene, "--frames", 1, DISPLAY="", WAYLAND_DISPLAY="")
+    assert_refused(result, "elemental shot")

@@ -1,0 +1,65 @@
+"""``elemental list``, ``--help`` and ``--version``."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cli.process import APP, elemental
+from cli.small_scene import write_corner
+from elemental.flags import build_parser
+from elemental.settings import SETTINGS
+from elemental.ui.bindings import BINDINGS
+
+
+def lines(*words: object, cwd: Path | None = None) -> list[str]:
+    result = elemental(*words, cwd=cwd)
+    assert result.returncode == 0, result.stderr
+    assert result.stderr == ""
+    return result.stdout.splitlines()
+
+
+def test_settings_bindings_and_views_have_a_line_each() -> None:
+    assert [line.split()[0] for line in lines("list", "settings")] == list(SETTINGS)
+    assert [line.rsplit("  ")[-1].strip() for line in lines("list", "bindings")] == [
+        binding.help for binding in BINDINGS
+    ]
+    views = [line.split(maxsplit=1) for line in lines("list", "views")]
+    assert all(len(line) == 2 for line in views)
+
+
+def test_scenes_and_cameras_can_be_named(tmp_path: Path) -> None:
+    write_corner(tmp_path)
+    assert lines("list", "cameras", "corner.gltf", cwd=tmp_path) == ["front"]
+    scenes = lines("list", "scenes")
+    assert "atrium" in scenes
+
+
+def test_the_version_is_told() -> None:
+    assert lines("--version") == ["elemental 0.1.0"]
+
+
+@pytest.mark.parametrize("command", ["shot", "run", "bench", "list"])
+def test_every_flag_has_one_line_of_help_with_its_default(command: str) -> None:
+    parser = build_parser(dict.fromkeys(("shot", "run", "bench", "list"), lambda _: None))
+    subparser = next(a for a in parser._actions if a.choices and command in a.choices)
+    assert isinstance(subparser.choices, dict)
+    for action in subparser.choices[command]._actions:
+        assert action.help
+        assert "\n" not in action.help
+        if action.dest != "help" and action.option_strings:
+            assert "default" in action.help
+    assert "usage: elemental" in "".join(lines(command, "--help"))
+
+
+def test_a_closed_pipe_ends_quietly() -> None:
+    pipeline = f"{sys.executable} -m elemental list settings | true"
+    environment = os.environ | {"PYTHONPATH": str(APP)}
+    result = subprocess.run(
+        pipeline, shell=True, env=environment, capture_output=True, text=True, check=False
+    )
+    assert result.stderr == ""

@@ -1,0 +1,134 @@
+"""``elemental run`` in a window under Xvfb."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from cli.process import APP, elemental
+from cli.small_scene import write_corner
+from cli.xvfb import display
+
+__all__ = ["display"]
+
+SMALL = ("--size", "96x64", "--set", "gi.resolution=64", "--set", "shadow.resolution=256")
+
+
+def test_thirty_frames_and_out(tmp_path: Path, display: str) -> None:
+    write_corner(tmp_path)
+    result = elemental("run", "corner.gltf", *SMALL, "--frames", 30, cwd=tmp_path, DISPLAY=display)
+    assert (result.returncode, result.stderr) == (0, "")
+    assert [path.name for path in tmp_path.iterdir()] == ["corner.gltf"]  # no imgui.ini
+
+
+def test_fullscreen_and_back_out(tmp_path: Path, display: str) -> None:
+    write_corner(tmp_path)
+    words = ("run", "corner.gltf", *SMALL, "--fullscreen", "--frames", 2)
+    result = elemental(*words, cwd=tmp_path, DISPLAY=display)
+    assert (result.returncode, result.stderr) == (0, "")
+
+
+MINIMISED = """
+import sys
+from elemental.cli import main
+from elemental.ui.window import Window
+sizes, real = iter([(0, 0)] * 5), Window.framebuffer_size
+Window.framebuffer_size = lambda self: next(sizes, None) or real(self)
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+BROKEN_SHADER = """
+import shutil, sys
+from dataclasses import replace
+from pathlib import Path
+import elemental.gpu.device as device
+from elemental.session import Viewpoint, set_stage
+from elemental.ui.app import App, Run
+from elemental.ui.window import Window
+
+root = Path("glsl").resolve()
+shutil.copytree(device.glsl_root(), root)
+device.glsl_root = lambda: root
+words = Run("corner.gltf", (96, 64), ["gi.enabled=false"], False, 2)
+stage = set_stage(words.scene, words.assignments, Viewpoint(), words.size)
+app = App(Window(words.size, "elemental"), stage, words)
+shader = root / "post/tonemap.comp.glsl"
+good = shader.read_text()
+
+def picture_after(source):
+    shader.write_text(source)
+    app.words = replace(app.words, frames=app.drawn + 2)
+    app.loop()
+    return app.renderer.read(app.frame).tobytes()
+
+before = picture_after(good)
+assert picture_after(good + "\\nthis is no GLSL\\n") == before
+assert len(app.problems) == 1 and "tonemap.comp.glsl:" in app.problems[0], app.problems
+assert picture_after(good) == before and app.problems == []
+app.release()
+"""
+
+
+def run_python(code: str, *words: str, folder: Path, display: str) -> tuple[int, str]:
+    """Exit code and stderr of ``code`` as a script in ``folder``, where corner.gltf lies."""
+    write_corner(folder)
+    result = subprocess.run(
+        [sys.executable, "-c", code, *words],
+        cwd=folder,
+        env=os.environ | {"PYTHONPATH": str(APP), "DISPLAY": display},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    return result.returncode, result.stderr
+
+
+def test_a_minimised_window_waits_and_goes_on(tmp_path: Path, display: str) -> None:
+    words = ("run", "corner.gltf", *SMALL, "--frames", "2")
+    assert run_python(MINIMISED, *words, folder=tmp_path, display=display) == (0, "")
+
+
+def test_a_broken_shader_keeps_its_last_good_program(tmp_path: Path, display: str) -> None:
+    code, stderr = run_python(BROKEN_SHADER, folder=tmp_path, display=display)
+    assert code == 0, stderr
+    assert "keeps its last good program" in stderr
+    assert "Traceback" not in stderr
+
+
+@pytest.mark.skipif(shutil.which("xdotool") is None, reason="xdotool is not installed")
+def test_keys_mouse_and_a_storm_of_sizes(tmp_path: Path, display: str) -> None:
+    write_corner(tmp_path)
+    environment = os.environ | {"PYTHONPATH": str(APP), "DISPLAY": display}
+
+    def act(*words: str) -> None:
+        subprocess.run(["xdotool", *words], env=environment, check=True, timeout=60)
+
+    command = [sys.executable, "-m", "elemental", "run", "corner.gltf", *SMALL]
+    with subprocess.Popen(
+        command, cwd=tmp_path, env=environment, stderr=subprocess.PIPE, text=True
+    ) as process:
+        try:
+            act("search", "--sync", "--onlyvisible", "--name", "elemental", "windowfocus")
+            keys = "F1 F1 F6 F6 v v shift+v 1 9 0 Home space period space r F12"
+            for key in keys.split():
+                act("key", key)
+                time.sleep(0.1)
+            act("keydown", "w", "keydown", "e", "sleep", "0.2", "keyup", "w", "keyup", "e")
+            act("mousemove", "40", "30", "mousedown", "3", "mousemove", "60", "40", "mouseup", "3")
+            act("click", "4", "click", "5")
+            for size in ("1 1", "300 2", "2 200", "640 360", "96 64"):
+                act("search", "--name", "elemental", "windowsize", *size.split())
+                time.sleep(0.2)
+            act("key", "Escape")
+            _, stderr = process.communicate(timeout=60)
+        finally:
+            process.kill()
+    assert (process.returncode, stderr) == (0, "")
+    assert len(list(tmp_path.glob("elemental-*.png"))) == 1

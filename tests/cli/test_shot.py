@@ -1,0 +1,126 @@
+"""``elemental shot`` end to end."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import PIL.Image
+import pytest
+from numpy.typing import NDArray
+
+from cli.process import elemental
+from cli.schema import mismatches
+from cli.small_scene import write_corner
+from elemental.core.images import read_exr
+from elemental.picture import encode_srgb
+from elemental.report import Report
+
+SMALL = ("--size", "48x32", "--set", "gi.resolution=64", "--set", "shadow.resolution=256")
+
+REQUIRED_VIEWS = {
+    "final",
+    "scene_color",
+    "normal",
+    "diffuse",
+    "specular",
+    "specular_power",
+    "ao",
+    "depth",
+    "shadow",
+    "diffuse_gi",
+    "specular_gi",
+    "direct",
+    "voxels",
+}
+
+
+def shot(folder: Path, *words: object) -> str:
+    """Render corner.gltf in ``folder``; returns stdout."""
+    write_corner(folder)
+    result = elemental("shot", "corner.gltf", *SMALL, *words, cwd=folder)
+    assert result.returncode == 0, result.stderr
+    assert "Traceback" not in result.stderr
+    return result.stdout
+
+
+def pixels(path: Path) -> NDArray[np.uint8]:
+    with PIL.Image.open(path) as image:
+        return np.asarray(image)
+
+
+def test_two_runs_give_the_same_bytes(tmp_path: Path) -> None:
+    for name in ("a.png", "b.png"):
+        assert shot(tmp_path, "-o", name) == f"{name}\n"
+    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
+    picture = pixels(tmp_path / "a.png")
+    assert picture.shape == (32, 48, 3)
+    assert picture.std() > 10  # not a plain colour
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["a.png", "b.png", "corner.gltf"]
+
+
+def test_the_report_follows_its_schema(tmp_path: Path) -> None:
+    shot(tmp_path, "-o", "a.png", "--report", "r.json", "--seed", 7, "--time", 1.5)
+    report = json.loads((tmp_path / "r.json").read_text())
+    assert mismatches(report, Report) == []
+    assert report["size"] == [48, 32]
+    assert (report["seed"], report["time_s"], report["view"]) == (7, 1.5, "final")
+    assert report["settings"]["gi.resolution"] == 64
+    assert report["scene"]["triangles"] == 6
+    assert report["gl"]["renderer"]
+    assert report["passes"]
+    assert all(entry["cpu_ms"] > 0 for entry in report["passes"])
+    assert report["frame"]["wall_ms"] >= report["frame"]["cpu_ms"] > 0
+    sizes = report["bytes"]
+    assert sizes["total"] == sum(size for name, size in sizes.items() if name != "total")
+    assert min(sizes["targets"], sizes["octree"], sizes["meshes"]) > 0
+    for what in ("voxel_fragments", "octree_nodes", "octree_bricks"):
+        assert report["counters"][what] > 0
+        assert report["counters"][f"{what}_dropped"] == 0
+    assert report["gl_messages"] == []
+
+
+def test_scene_color_as_exr_is_linear_radiance(tmp_path: Path) -> None:
+    words = ("--view", "scene_color", "--set", "gi.enabled=false", "-o")
+    shot(tmp_path, *words, "a.exr", "--set", "exposure=5")
+    shot(tmp_path, *words, "b.exr", "--set", "exposure=-5")
+    radiance = read_exr(tmp_path / "a.exr")
+    assert radiance.shape == (32, 48, 3)
+    assert radiance.max() == pytest.approx(1.0, rel=1e-3)  # the lamp, in half floats
+    assert (tmp_path / "a.exr").read_bytes() == (tmp_path / "b.exr").read_bytes()
+
+
+def test_final_as_exr_shows_what_the_png_shows(tmp_path: Path) -> None:
+    shot(tmp_path, "-o", "a.png")
+    shot(tmp_path, "-o", "a.exr")
+    display = encode_srgb(read_exr(tmp_path / "a.exr"))
+    np.testing.assert_allclose(display * 255, pixels(tmp_path / "a.png"), atol=0.51)
+
+
+def test_a_numbered_name_gets_each_frame_and_a_plain_one_the_last(tmp_path: Path) -> None:
+    assert shot(tmp_path, "-o", "s.%03d.png", "--frames", 3) == "s.002.png\n"
+    names = [f"s.00{i}.png" for i in range(3)]
+    assert sorted(p.name for p in tmp_path.glob("*.png")) == names
+    shot(tmp_path, "-o", "last.png", "--frames", 3)
+    assert (tmp_path / "last.png").read_bytes() == (tmp_path / names[2]).read_bytes()
+
+
+def test_cameras_by_name_and_by_place_agree(tmp_path: Path) -> None:
+    fov = np.degrees(0.7)
+    shot(tmp_path, "-o", "a.png", "--camera", "front")
+    shot(tmp_path, "-o", "b.png")
+    shot(tmp_path, "-o", "c.png", "--eye", "0,1,4", "--target", "0,1,0", "--fov", fov)
+    shot(tmp_path, "-o", "d.png", "--eye", "-1,1,4", "--target", "0,1,0")
+    a, b, c, d = (pixels(tmp_path / f"{name}.png").astype(int) for name in "abcd")
+    assert np.array_equal(a, b)
+    assert np.abs(a - c).max() <= 2
+    assert np.abs(a - d).max() > 20
+
+
+def test_every_view_can_be_written(tmp_path: Path) -> None:
+    views = [line.split()[0] for line in elemental("list", "views").stdout.splitlines()]
+    assert set(views) >= REQUIRED_VIEWS
+    for view in views:
+        shot(tmp_path, "-o", f"{view}.png", "--view", view)
+        assert pixels(tmp_path / f"{view}.png").shape == (32, 48, 3)
