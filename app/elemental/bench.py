@@ -193,7 +193,8 @@ def print_tables(report: BenchReport, console: Console) -> None:
     for name, count in report["counters"].items():
         console.print(f"{name}: {count:,}")
     mebibytes: Mapping[str, int] = {k: v for k, v in report["bytes"].items() if isinstance(v, int)}
-    console.print(", ".join(f"{k} {v / 2**20:.1f} MiB" for k, v in mebibytes.items()))
+    line = ", ".join(f"{k} {v / 2**20:.1f} MiB" for k, v in mebibytes.items())
+    console.print(line, soft_wrap=True)
 
 
 def _cells(times: Spread) -> tuple[str, str, str]:
