@@ -209,8 +209,10 @@ def read_scene_file(path: Path) -> SceneFile:
     try:
         return SceneFile.model_validate(tables)
     except ValidationError as error:
-        found = error.errors(include_url=False, include_context=False, include_input=False)
-        reasons = [_reason(e["loc"], e["type"], e["msg"]) for e in found]
+        found = error.errors(include_url=False, include_input=False)
+        reasons = [
+            (_field(e["loc"]), _reason(e["type"], e["msg"], e.get("ctx", {}))) for e in found
+        ]
         raise CombinedInputError(path, reasons) from error
 
 
@@ -225,13 +227,22 @@ def flat_settings(settings: dict[str, Any], prefix: str = "") -> dict[str, Any]:
     return flat
 
 
-def _reason(place: tuple[int | str, ...], kind: str, message: str) -> tuple[str, str]:
-    """(field, reason) in the words of the other errors."""
+def _field(place: tuple[int | str, ...]) -> str:
+    """("lights", 0, "kind") as lights[0].kind."""
     field = ""
     for step in place:
         field += f"[{step}]" if isinstance(step, int) else f".{step}" if field else step
+    return field
+
+
+def _reason(kind: str, message: str, context: dict[str, Any]) -> str:
+    """pydantic's words in those of the other errors."""
     if kind == "extra_forbidden":
-        return field, "is an unknown key"
+        return "is an unknown key"
     if kind == "missing":
-        return field, "is missing"
-    return field, message.removeprefix("Value error, ").replace("Input should", "should")
+        return "is missing"
+    if kind == "too_short":
+        return f"needs {context['min_length']} items or more, not {context['actual_length']}"
+    if kind == "too_long":
+        return f"needs {context['max_length']} items or fewer, not {context['actual_length']}"
+    return message.removeprefix("Value error, ").replace("Input should", "should")

@@ -25,7 +25,7 @@ from gltf_builder import GltfBuilder
 INPUTS_AN_EXAMPLE = 10
 
 FUZZ = settings(
-    max_examples=200,
+    max_examples=150,
     deadline=None,
     database=None,
     derandomize=True,

@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 import PIL.Image
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from elemental.core.errors import InputError
 from elemental.core.files import atomic_file
@@ -175,3 +177,21 @@ def test_failed_write_leaves_nothing(tmp_path: Path) -> None:
 def test_missing_folder(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="can't be written"):
         write_png(tmp_path / "none" / "a.png", RGB8)
+
+
+HDR = encode_rgbe(np.full((3, 9, 3), 2.0, np.float32))
+
+
+@settings(max_examples=300, deadline=None, derandomize=True, database=None,
+          suppress_health_check=list(HealthCheck))  # fmt: skip
+@given(at=st.integers(0, len(HDR) - 1), length=st.integers(0, 9), edit=st.binary(max_size=3))
+def test_edited_hdr_files_load_or_are_refused(
+    at: int, length: int, edit: bytes, tmp_path: Path
+) -> None:
+    (tmp_path / "a.hdr").write_bytes(HDR[:at] + edit + HDR[at + length :])
+    try:
+        radiance = read_environment(tmp_path / "a.hdr")
+    except InputError:
+        return
+    assert np.isfinite(radiance).all()
+    assert radiance.min() >= 0.0
