@@ -41,12 +41,12 @@ def path_trace(scene: Scene, camera: Camera, job: Job, folder: Path) -> FloatArr
     area_lights = _emitting_surfaces(scene, surfaces)
     sky = _environment(scene, job.sky_intensity)
     punctual = {f"light{k}": _punctual(light) for k, light in enumerate(scene.lights)}
-    image = np.zeros((job.size[1], job.size[0], 3), np.float32)
+    parts = [np.zeros((job.size[1], job.size[0], 3), np.float32)]
     if area_lights or sky:
-        image += _render({**surfaces, **area_lights, **sky}, camera, job, job.bounces + 1)
+        parts.append(_render({**surfaces, **area_lights, **sky}, camera, job, job.bounces + 1))
     if punctual:
-        image += _render({**surfaces, **punctual}, camera, job, job.bounces + 2)
-    return image
+        parts.append(_render({**surfaces, **punctual}, camera, job, job.bounces + 2))
+    return np.asarray(np.sum(parts, axis=0), dtype=np.float32)
 
 
 def emission_mask(scene: Scene, camera: Camera, job: Job, folder: Path) -> FloatArray:

@@ -1,0 +1,140 @@
+"""Compares `scene_color` with a path-traced reference of the same scene: `tools/ground_truth -h`.
+
+The scene, its camera, materials and lights go through the program's own loader, are converted for
+mitsuba 3 (reference/mitsuba_scene.py, reference/bsdf.py: how light counts and materials map) and
+path-traced to linear radiance. Ours comes from `elemental shot --view scene_color`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import mitsuba as mi
+
+from elemental.core.errors import InputError
+from elemental.core.images import read_environment
+from elemental.scene.model import FloatArray
+from elemental.session import Stage, Viewpoint, set_stage
+
+mi.set_variant("scalar_rgb")
+
+from reference.cache import cached, fingerprint  # noqa: E402  (mitsuba first needs its variant)
+from reference.metrics import compare, hdr_flip, table, to_json  # noqa: E402
+from reference.mitsuba_scene import Job, emission_mask, path_trace  # noqa: E402
+from reference.sheet import sheet  # noqa: E402
+
+OUT = Path(__file__).resolve().parent.parent / "out" / "ground_truth"
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="tools/ground_truth", description=__doc__)
+    parser.add_argument("scene", metavar="SCENE", help="a file or a scene's name, as for `shot`")
+    parser.add_argument("--size", default="320x180", metavar="WxH", help="pixels (320x180)")
+    parser.add_argument("--camera", metavar="NAME", help="a camera of the scene (its first)")
+    parser.add_argument("--eye", type=_point, metavar="X,Y,Z", help="camera position, metres")
+    parser.add_argument("--target", type=_point, metavar="X,Y,Z", help="point looked at, metres")
+    parser.add_argument("--fov", type=float, metavar="DEG", help="vertical angle, degrees")
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="KEY=VALUE", help="a setting, repeatable"
+    )
+    parser.add_argument("--spp", type=int, default=512, help="samples a pixel (512)")
+    parser.add_argument("--ours", type=Path, metavar="FILE.exr", help="compare this picture")
+    parser.add_argument(
+        "--out", type=Path, metavar="STEM", help="STEM.png and STEM.json (out/ground_truth/SCENE)"
+    )
+    return parser
+
+
+def _point(text: str) -> tuple[float, float, float]:
+    x, y, z = (float(word) for word in text.split(","))
+    return x, y, z
+
+
+def shoot(words: argparse.Namespace, stage: Stage) -> FloatArray:
+    """Our `scene_color`, by the command line in a process of its own, seen from `stage.camera`."""
+    with tempfile.TemporaryDirectory() as folder:
+        output = Path(folder) / "ours.exr"
+        command = [sys.executable, "-m", "elemental", "shot", words.scene, "-o", str(output)]
+        command += ["--view", "scene_color", "--size", words.size]
+        if words.eye is not None:
+            for flag, point in (("--eye", words.eye), ("--target", words.target)):
+                command += [flag, ",".join(map(str, point))]
+        elif stage.scene.cameras:
+            command += ["--camera", stage.camera.name]
+        if words.fov is not None:
+            command += ["--fov", str(words.fov)]
+        for assignment in words.set:
+            command += ["--set", assignment]
+        if subprocess.run(command, check=False).returncode != 0:
+            raise InputError("shot", "", "failed")
+        return read_environment(output)
+
+
+def reference(stage: Stage, job: Job) -> tuple[FloatArray, FloatArray]:
+    """(the path-traced picture (H, W, 3), the mask (H, W) of pixels that see no light source)."""
+    scene = stage.scene
+    content = (scene.meshes, scene.instances, scene.materials, scene.textures, scene.lights)
+    key = fingerprint(*content, scene.environment, stage.camera, job)
+    start = time.monotonic()
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        picture, known = cached(
+            OUT / "cache", key, lambda: path_trace(scene, stage.camera, job, folder)
+        )
+        mask, _ = cached(
+            OUT / "cache",
+            f"{key}-mask",
+            lambda: emission_mask(scene, stage.camera, job, folder)[..., None].repeat(3, axis=2),
+        )
+    if not known:
+        print(f"path traced in {time.monotonic() - start:.1f} s", file=sys.stderr)
+    return picture, mask[..., 0]
+
+
+def main() -> int:
+    """Run, with one line for input that is wrong."""
+    try:
+        return run(_parser().parse_args())
+    except InputError as error:
+        print(f"ground_truth: error: {error}", file=sys.stderr)
+        return 2
+
+
+def run(words: argparse.Namespace) -> int:
+    """Render, compare, write."""
+    width, height = (int(side) for side in words.size.split("x"))
+    viewpoint = Viewpoint(words.camera, words.eye, words.target, words.fov)
+    stage = set_stage(words.scene, words.set, viewpoint, (width, height))
+    settings = stage.settings
+    bounces = int(settings["gi.bounces"]) if settings["gi.enabled"] else 0
+    job = Job((width, height), words.spp, bounces, float(settings["sky.intensity"]))
+    ours = shoot(words, stage) if words.ours is None else read_environment(words.ours)
+    picture, mask = reference(stage, job)
+    figures = {
+        "scene": words.scene,
+        "size": words.size,
+        "camera": stage.camera.name,
+        "settings": words.set,
+        "spp": words.spp,
+        "bounces": bounces,
+        "hdr_flip": hdr_flip(ours, picture),
+        "all": compare(ours, picture, mask * 0 + 1),
+        "surfaces": compare(ours, picture, mask),
+    }
+    print(table(figures))
+    stem = words.out or OUT / Path(words.scene).stem
+    stem.parent.mkdir(parents=True, exist_ok=True)
+    title = " ".join([Path(words.scene).stem, *words.set])
+    sheet(ours, picture, title).save(stem.with_suffix(".png"))
+    stem.with_suffix(".json").write_text(to_json(figures))
+    print(f"{stem.with_suffix('.png')}\n{stem.with_suffix('.json')}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
