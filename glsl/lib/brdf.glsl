@@ -77,13 +77,18 @@ vec3 fresnel_schlick(vec3 specular_color, float v_o_h) {
     return specular_color + (1.0 - specular_color) * (squared * squared * x);
 }
 
-// Share of a uniform environment that a GGX surface mirrors into the direction of cosine n_o_v: the
-// analytic fit of [Karis14 "Physically Based Shading on Mobile"], after [Lazarov13].
+// Share of a uniform environment that a GGX surface mirrors into the direction of cosine n_o_v, with
+// height-correlated Smith shadowing: specular_color * (1 - loss - grazing) + grazing, the split of
+// [Karis13 "Environment BRDF"]. loss and grazing are exponentials of cubics in roughness and
+// sqrt(n_o_v), fitted by least squares to the integral over 33x33 directions and roughnesses: mean
+// error 0.006 and 0.002, largest 0.05 and 0.03. [Karis14]'s shorter fit, made for another shadowing
+// term, is 0.03 off in the mean and 0.15 at most.
 vec3 environment_brdf(vec3 specular_color, float roughness, float n_o_v) {
-    const vec4 c0 = vec4(-1.0, -0.0275, -0.572, 0.022);
-    const vec4 c1 = vec4(1.0, 0.0425, 1.04, -0.04);
-    vec4 r = roughness * c0 + c1;
-    float a004 = min(r.x * r.x, exp2(-9.28 * n_o_v)) * r.x + r.y;
-    vec2 scale_bias = vec2(-1.04, 1.04) * a004 + r.zw;
-    return specular_color * scale_bias.x + scale_bias.y;
+    float r = roughness;
+    float s = sqrt(n_o_v);
+    float grazing = exp(0.051 + s * (-0.548 + s * (-1.160 - 8.007 * s))
+        + r * (-1.677 + s * (3.414 + 7.621 * s) + r * (-6.422 - 8.690 * s + 5.962 * r)));
+    float loss = exp(-2.922 + s * (-0.473 + s * (-11.660 + 3.549 * s))
+        + r * (1.073 + s * (25.026 + 2.432 * s) + r * (-9.110 - 15.918 * s + 7.639 * r)));
+    return specular_color * max(1.0 - loss - grazing, 0.0) + grazing;
 }

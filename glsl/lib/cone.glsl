@@ -3,11 +3,12 @@
 
 #include "lib/svo_lookup.glsl"
 
-const float CONE_STEP = 0.5;           // of the cone's width
+const float CONE_STEP = 0.5;           // of the voxel's width
 const float CONE_OPAQUE = 0.98;        // stop where this much is hidden
 const float CONE_SKIP_EPSILON = 0.01;  // finest voxels past the far side of an empty node
 const int CONE_STEPS_MAX = 256;
-const int CONE_COARSEST_LEVEL = 2;     // coarser nodes span a quarter of the scene and more
+// Cone widths a voxel: a trilinear lookup of a tent-filtered level already sees about two voxels.
+const float CONE_FOOTPRINT = 1.5;
 
 // Extinction a voxel length of a sample with the opacity a. Trilinear filtering spreads a one-voxel
 // layer of opacity A into the profile A (1 - |x|); this is the function whose integral over that
@@ -51,18 +52,14 @@ ConeSample cone_sample(vec3 p, float lod, vec3 direction, vec3 inverse_direction
     vec3 local = p * reached_scale - vec3(voxel >> reached_shift);
     vec4 coarse_value = brick_lookup(node, local, sides, weights);
     vec4 fine_value = vec4(0.0);
-    if (reached == coarse) {
-        uint tile = node_child(node);
-        if (tile == 0u) {
-            // A leaf of a coarser region stands for its finer levels too; a cleared child does not.
-            fine_value = coarse_value;
-        } else {
-            Node child = nodes[child_node(tile, voxel >> (shift - 1u))];
-            vec3 child_local = local * 2.0 - vec3((voxel >> (shift - 1u)) & 1u);
-            if (node_has_brick(child)) fine_value = brick_lookup(child, child_local, sides, weights);
-        }
+    uvec3 child_cell = voxel >> (shift - 1u);
+    bool dense_child = coarse < u_octree.top_level;
+    if (reached < coarse || (!dense_child && node.child == 0u)) {
+        fine_value = coarse_value;  // a leaf of a coarser region stands for its finer levels too
     } else {
-        fine_value = coarse_value;
+        Node child = nodes[dense_child ? dense_node(coarse + 1, child_cell) : child_node(node.child, child_cell)];
+        vec3 child_local = local * 2.0 - vec3(child_cell & 1u);
+        if (node_has_brick(child)) fine_value = brick_lookup(child, child_local, sides, weights);
     }
     return ConeSample(mix(fine_value, coarse_value, lod - float(mip)), 0.0);
 }
@@ -70,18 +67,18 @@ ConeSample cone_sample(vec3 p, float lod, vec3 direction, vec3 inverse_direction
 // Pos: world space. ConeAngle: half the aperture in radians. Radiance, and how much is hidden.
 // start_m: distance along the cone at which the march begins, the start bias.
 vec4 cone_trace_from(vec3 Pos, vec3 Direction, float ConeAngle, float start_m) {
-    float side = float(u_octree.resolution);
+    float side = 2.0 * float(u_octree.resolution);
     vec3 origin = octree_from_world(Pos) * side;
     vec3 guarded = mix(Direction, vec3(1e-6), lessThan(abs(Direction), vec3(1e-6)));
     vec3 inverse_direction = 1.0 / guarded;
     uvec3 sides = sides_seen(Direction);
     vec3 weights = side_weights(Direction);
     float widening = 2.0 * tan(ConeAngle);
-    float lod_last = float(u_octree.leaf_level - CONE_COARSEST_LEVEL - 1);
+    float lod_last = float(u_octree.leaf_level) - 1e-3;
     float t = start_m / u_octree.voxel_m;
     vec4 gathered = vec4(0.0);
     for (int i = 0; i < CONE_STEPS_MAX; ++i) {
-        float width = max(widening * t, 1.0);
+        float width = max(widening * t / CONE_FOOTPRINT, 1.0);
         float advance = width * CONE_STEP;
         vec3 p = origin + Direction * (t + 0.5 * advance);
         if (any(lessThan(p, vec3(0.0))) || any(greaterThanEqual(p, vec3(side)))) break;

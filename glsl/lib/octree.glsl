@@ -2,7 +2,7 @@
 // [Mittring12 "Sparse Voxel Octree"]. Needs `nodes` (shared/octree_buffers.glsl).
 
 #include "shared/octree_buffers.glsl"
-#include "lib/morton.glsl"
+#include "lib/dense_nodes.glsl"
 
 struct NodeLocation {
     uint node;    // index into nodes
@@ -10,13 +10,6 @@ struct NodeLocation {
     vec3 local;   // position inside it, 0..1
     int level;    // the level that was reached: the wanted one, or the deepest above it
 };
-
-// Levels up to the top level are dense: node index = grid start + Morton code.
-uint dense_node(int level, uvec3 cell) {
-    return ((1u << (3 * level)) - 1u) / 7u + morton_encode(cell);
-}
-
-uint first_tile_node() { return ((1u << (3 * (u_octree.top_level + 1))) - 1u) / 7u; }
 
 uint child_node(uint tile_plus_one, uvec3 child_cell) {
     uvec3 odd = child_cell & 1u;

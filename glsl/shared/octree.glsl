@@ -1,6 +1,8 @@
 // The sparse voxel octree's layout: constants, the uniform block, and the GPU's own counters.
 //
 // Level l has 2^l nodes a side; its lattice has 2^(l+1) points a side, spaced size / 2^(l+1).
+// The scene fills the middle half of the cube along each axis: only so do the coarse levels have
+// lattice points on all sides of it, and wide cones see its walls whole.
 // Node n owns the 2x2x2 points 2n + {0,1}^3 and filters over 2n + {0,1,2}^3.
 // [Mittring12 "Sparse Voxel Octree"]
 
@@ -16,7 +18,8 @@ const uint FRAGMENT_GROUP = 128u;      // threads a group over the fragment queu
 const uint BRICK_GROUP = 64u;          // threads a group over bricks and their voxels
 const uint SCAN_GROUP = 256u;          // threads a group in the prefix sums
 const uint SCAN_BLOCKS = 2048u;        // 64-node blocks that one such group sums
-const uint REGION_SIDE = 8u;           // the cube is split into 8^3 regions, each with its leaf level
+const uint REGION_SIDE = 8u;           // the scene is split into 8^3 regions, each with its leaf level
+const int REGION_LEVEL = 4;            // nodes of this level are as large as a region
 
 // A node is two words. child: index of the tile of eight children + 1, 0 = none.
 // brick: see NODE_BRICK_MASK; where it is 0, `child` holds the level of the largest empty ancestor.
@@ -25,7 +28,7 @@ struct Node {
     uint brick;
 };
 
-// One rasterized sample of a surface. position: 10:10:10 lattice coordinates at the finest level;
+// One rasterized sample of a surface. position: 10:10:10 coordinates on the finest lattice from the scene's corner;
 // albedo: RGBA8, a = opacity; normal: snorm8 xyz; emissive: RGB9E5 radiance.
 struct VoxelFragment {
     uint position;
@@ -77,9 +80,9 @@ struct OctreeState {
 layout(std140) uniform Octree {
     vec4 origin_size;    // xyz: world position of lattice point 0; w: side of the cube, m
     int leaf_level;      // the finest
-    int top_level;       // levels up to it are dense arrays
+    int top_level;       // up to it nodes are dense and cover the cube, below it only the scene
     int coarsest_leaf;   // the coarsest leaf level that a region asks for
-    int resolution;      // lattice points a side at the finest level
+    int resolution;      // lattice points along a side of the scene at the finest level: half the cube's
     float voxel_m;       // metres between points of the finest lattice
     float fixed_point;   // accumulator units a unit of emitted radiance
     uint block_count;    // 64-node blocks of all levels

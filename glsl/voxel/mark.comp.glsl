@@ -14,7 +14,7 @@ void main() {
     if (index >= min(octree_state.fragment_count, u_octree.fragment_capacity)) return;
     int level;
     uvec3 point = leaf_point(unpack_position(fragments[index].position), level);
-    uint code = morton_encode(point);
+    uint code = grid_code(level + 1, point);
     uint word = cell_word(level + 1, code);
     uint bit = cell_bit(code);
     if ((point_words[word] & bit) == 0u) atomicOr(point_words[word], bit);

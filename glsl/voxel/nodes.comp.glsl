@@ -2,6 +2,7 @@
 // [Mittring12 "Sparse Voxel Octree": fully maintained on GPU]
 
 #include "lib/lattice.glsl"
+#include "lib/dense_nodes.glsl"
 #include "lib/node_ranks.glsl"
 
 layout(local_size_x = 64) in;
@@ -11,48 +12,49 @@ layout(std430) readonly buffer State { OctreeState octree_state; };
 layout(std430) writeonly buffer Nodes { Node nodes[]; };
 layout(std430) writeonly buffer Bricks { Brick bricks[]; };
 
-bool node_exists(int level, uint code) {
+bool node_exists(int level, uvec3 cell) {
+    if (!in_grid(level, ivec3(cell))) return false;
+    uint code = grid_code(level, cell);
     return (node_words[cell_word(level, code)] & cell_bit(code)) != 0u;
 }
 
-// Tile of the node's children + 1, 0 where it has none or the pool is full.
-uint tile_of_children(int level, uint code) {
-    if (level < u_octree.top_level || level >= u_octree.leaf_level) return 0u;
-    uint block = grid_first_block(level + 1) + (code >> 3);
-    uvec2 bits = uvec2(node_words[block * 2u], node_words[block * 2u + 1u]);
-    uint byte_start = (code & 7u) * 8u;
-    uvec2 used = used_bytes(bits);
-    uvec2 siblings = bits_below(byte_start + 8u) & ~bits_below(byte_start);
-    if ((bits & siblings) == uvec2(0u)) return 0u;
+// Existence bits of a node's eight children, as a byte, and where that byte stands.
+uint child_byte(int level, uvec3 cell, out uint block, out uint byte_start) {
+    uvec3 first_child = cell * 2u;
+    if (level >= u_octree.leaf_level || !in_grid(level + 1, ivec3(first_child))) return 0u;
+    uint code = grid_code(level + 1, first_child);
+    block = grid_first_block(level + 1) + (code >> 6);
+    byte_start = code & 63u;
+    return (node_words[block * 2u + (byte_start >> 5)] >> (byte_start & 31u)) & 0xffu;
+}
+
+// Tile of the children + 1, 0 where there are none, their level is dense, or the pool is full.
+uint tile_of_children(int level, uint byte, uint block, uint byte_start) {
+    if (level < u_octree.top_level || byte == 0u) return 0u;
+    uvec2 used = used_bytes(uvec2(node_words[block * 2u], node_words[block * 2u + 1u]));
     uint tile = block_rank(block).y + bit_count64(used & bits_below(byte_start));
     return tile < octree_state.tile_count ? tile + 1u : 0u;
 }
 
-bool has_children(int level, uint code) {
-    if (level >= u_octree.leaf_level) return false;
-    uint word = node_words[cell_word(level + 1, code << 3)];
-    return ((word >> ((code & 3u) * 8u)) & 0xffu) != 0u;
-}
-
 // The largest empty ancestor of an empty node, the node itself included.
-int empty_level(int level, uint code) {
-    while (level > 0 && !node_exists(level - 1, code >> 3)) {
+int empty_level(int level, uvec3 cell) {
+    while (level > 0 && !node_exists(level - 1, cell >> 1u)) {
         --level;
-        code >>= 3;
+        cell >>= 1u;
     }
     return level;
 }
 
-uint dense_start(int level) { return ((1u << (3 * level)) - 1u) / 7u; }
-
-void write_node(uint index, int level, uint code, bool exists, uint brick) {
+void write_node(uint index, int level, uvec3 cell, bool exists, uint brick) {
     Node node = Node(0u, 0u);
     if (exists && brick < octree_state.brick_count) {
-        node.child = tile_of_children(level, code);
+        uint block, byte_start;
+        uint byte = child_byte(level, cell, block, byte_start);
+        node.child = tile_of_children(level, byte, block, byte_start);
         node.brick = brick + 1u;
-        bricks[brick] = Brick(pack_cell(morton_decode(code), level, !has_children(level, code)), index);
+        bricks[brick] = Brick(pack_cell(cell, level, byte == 0u), index);
     } else {
-        node.child = uint(empty_level(level, code));
+        node.child = uint(empty_level(level, cell));
     }
     nodes[index] = node;
 }
@@ -67,13 +69,13 @@ void main() {
 
     uvec2 rank = block_rank(block);
     uint first_code = (block - grid_first_block(level)) * 64u;
-    uint node_count = min(64u, 1u << (3 * level));
+    uint node_count = min(64u, grid_side(level) * grid_side(level) * grid_side(level));
     uint tile = rank.y;
     uint index = 0u;
     for (uint i = 0u; i < node_count; ++i) {
         uint code = first_code + i;
         if (dense) {
-            index = dense_start(level) + code;
+            index = octal_sum(level) + code;
         } else if ((i & 7u) == 0u) {
             uint word = i < 32u ? bits.x : bits.y;
             if (((word >> (i & 31u)) & 0xffu) == 0u) {
@@ -81,12 +83,12 @@ void main() {
                 continue;
             }
             if (tile >= octree_state.tile_count) return;
-            index = dense_start(u_octree.top_level + 1) + tile * 8u;
+            index = first_tile_node() + tile * 8u;
             ++tile;
         }
         bool exists = ((i < 32u ? bits.x : bits.y) & (1u << (i & 31u))) != 0u;
         uint brick = rank.x + bit_count64(bits & bits_below(i));
-        write_node(index, level, code, exists, brick);
+        write_node(index, level, grid_cell(level, code), exists, brick);
         ++index;
     }
 }

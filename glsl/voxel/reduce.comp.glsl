@@ -33,14 +33,14 @@ uvec2 points_of_coarser(uint axis, int offset) {
 }
 
 void set_node(ivec3 cell, int level) {
-    uint code = morton_encode(uvec3(cell));
+    uint code = grid_code(level, uvec3(cell));
     uint word = cell_word(level, code);
     uint bit = cell_bit(code);
     if ((node_words[word] & bit) == 0u) atomicOr(node_words[word], bit);
 }
 
 void set_coarser_point(ivec3 point, int level) {
-    uint code = morton_encode(uvec3(point));
+    uint code = grid_code(level, uvec3(point));
     uint word = cell_word(level, code);
     uint bit = cell_bit(code);
     if ((point_words[word] & bit) == 0u) atomicOr(point_words[word], bit);
@@ -54,22 +54,20 @@ void main() {
     uvec2 bits = uvec2(point_words[first_word], point_words[first_word + 1u]);
     if (bits == uvec2(0u)) return;
 
-    int side = 1 << level;
-    ivec3 base = ivec3(morton_decode(block)) * 2;
+    ivec3 base = ivec3(grid_cell(level + 1, block * 64u)) / 2;
     for (int i = 0; i < 27; ++i) {
         ivec3 offset = ivec3(i % 3, (i / 3) % 3, i / 9);
         ivec3 cell = base + offset - 1;
         uvec2 touched = points_of_node(0u, offset.x - 1) & points_of_node(1u, offset.y - 1)
                         & points_of_node(2u, offset.z - 1) & bits;
-        bool in_grid = all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(cell, ivec3(side)));
-        if (touched != uvec2(0u) && in_grid && leaf_level_of_cell(uvec3(cell), level) >= level) {
+        if (touched != uvec2(0u) && in_grid(level, cell) && leaf_level_of_cell(cell, level) >= level) {
             set_node(cell, level);
         }
         ivec3 coarser = base + offset;
         uvec2 reached = points_of_coarser(0u, offset.x) & points_of_coarser(1u, offset.y)
                         & points_of_coarser(2u, offset.z) & bits;
         // The lattice of level - 1 has as many points as this level has nodes.
-        if (level > 0 && reached != uvec2(0u) && all(lessThan(coarser, ivec3(side)))) {
+        if (level > 0 && reached != uvec2(0u) && in_grid(level, coarser)) {
             set_coarser_point(coarser, level);
         }
     }

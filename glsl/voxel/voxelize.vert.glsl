@@ -12,7 +12,7 @@ in vec2 a_uv1;
 in vec4 a_color;
 in uint a_instance;
 
-out vec3 v_point;      // in lattice points
+out vec3 v_point;      // in lattice points from the scene's corner
 out vec3 v_normal_ws;
 out vec2 v_uv0;
 out vec2 v_uv1;
@@ -22,7 +22,8 @@ flat out uint v_material;
 void main() {
     Instance instance = instances[a_instance];
     vec3 p_ws = (instance.world_from_local * vec4(a_position, 1.0)).xyz;
-    v_point = (p_ws - u_octree.origin_size.xyz) / u_octree.voxel_m;
+    vec3 in_cube = (p_ws - u_octree.origin_size.xyz) / u_octree.voxel_m;
+    v_point = in_cube - 0.5 * float(u_octree.resolution);
     v_normal_ws = mat3(instance.normal_from_local) * a_normal;
     v_uv0 = a_uv0;
     v_uv1 = a_uv1;

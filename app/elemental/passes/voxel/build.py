@@ -15,7 +15,6 @@ from elemental.core.layout import Block, layouts, pack
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import AnyBuffer
 from elemental.gpu.shaders import Compute
-from elemental.passes.voxel.grid import grid_block_count
 from elemental.passes.voxel.octree import Octree, Survey
 
 MARK = Compute("voxel/mark.comp.glsl")
@@ -72,7 +71,7 @@ def find_nodes(
             reads={"Regions": octree.regions},
             writes={"Points": points, "NodeBits": node_bits},
             params={**octree.params, "OctreeLevel": level_params(level)},
-            threads=grid_block_count(level + 1),
+            threads=grid.grid_blocks(level + 1),
         )
     group_blocks = int(layouts().constant("SCAN_BLOCKS"))
     groups = -(-grid.block_count // group_blocks)

@@ -8,37 +8,27 @@ import numpy as np
 import numpy.typing as npt
 
 REGION_SIDE = 8
-"""Regions a side of the cube; REGION_SIDE of glsl/shared/octree.glsl."""
-REGION_LEVEL = 3
-"""The octree level whose nodes are the regions: log2(REGION_SIDE)."""
+"""Regions along a side of the scene; REGION_SIDE of glsl/shared/octree.glsl."""
+REGION_LEVEL = 4
+"""The octree level whose nodes are as large as a region: the scene is half the cube."""
 MAX_LEVEL = 9
-"""Finest leaf level: 1,024 lattice points a side, ten bits of a fragment's position."""
-DENSE_TOP_LEVEL = 5
-"""Levels up to this one are dense arrays, which saves that many hops of every descent."""
+"""Finest leaf level, 512 lattice points along the scene: what a brick's packed cell can say."""
+DENSE_LEVELS_BELOW_LEAF = 3
+"""Where the dense levels end. The scene's margin keeps finer lattices inside the scene's part."""
 MARGIN_VOXELS = 3
-"""Empty lattice points kept between the scene and the cube's sides."""
+"""Empty lattice points between the scene and the sides of its part of the cube."""
 MIN_SIZE_M = 1e-6
 """Side of the cube of a scene that is a single point."""
 
 
-def grid_first_block(exponent: int) -> int:
-    """First 64-cell block of the grid with 2^exponent cells a side (lib/node_bits.glsl)."""
-    return exponent if exponent < 2 else 2 + (8 ** (exponent - 2) - 1) // 7
-
-
-def grid_block_count(exponent: int) -> int:
-    """64-cell blocks of the grid with 2^exponent cells a side."""
-    return 1 if exponent < 2 else 8 ** (exponent - 2)
-
-
-def dense_node_count(top_level: int) -> int:
-    """Nodes of the levels 0..top_level when all exist."""
-    return (8 ** (top_level + 1) - 1) // 7
+def octal_sum(n: int) -> int:
+    """8^0 + ... + 8^(n-1)."""
+    return (8**n - 1) // 7
 
 
 @dataclass(frozen=True)
 class Grid:
-    """A cube of lattice points with a leaf level for each of its 8^3 regions.
+    """A cube of lattice points whose middle half holds the scene, in 8^3 regions with leaf levels.
 
     origin (3,) float32, m: the position of lattice point 0; size, m: the cube's side;
     region_levels (8, 8, 8) uint32 by [z, y, x]: the leaf level of each region.
@@ -55,20 +45,19 @@ class Grid:
         resolution: int,
         region_offsets: npt.NDArray[np.int64] | None = None,
     ) -> Grid:
-        """The cube around ``bounds`` (min, max), m, with ``resolution`` lattice points a side.
+        """The cube for ``bounds`` (min, max), m, with ``resolution`` lattice points along the scene.
 
         ``region_offsets`` (8, 8, 8) by [z, y, x]: levels finer (+) or coarser (-) than that.
         """
         low, high = (np.asarray(corner, np.float64) for corner in bounds)
-        leaf_level = resolution.bit_length() - 2
+        leaf_level = resolution.bit_length() - 1
         extent = max(float((high - low).max()), MIN_SIZE_M)
         spacing = extent / (resolution - 1 - 2 * MARGIN_VOXELS)
-        size = spacing * resolution
-        origin = (low + high) * 0.5 - (resolution - 1) * 0.5 * spacing
+        origin = (low + high) * 0.5 - (resolution - 0.5) * spacing
         levels = np.full((REGION_SIDE,) * 3, leaf_level, np.int64)
         if region_offsets is not None:
-            levels = np.clip(levels + region_offsets, REGION_LEVEL, MAX_LEVEL)
-        return cls(origin.astype(np.float32), size, levels.astype(np.uint32))
+            levels = np.clip(levels + region_offsets, REGION_LEVEL + 1, MAX_LEVEL)
+        return cls(origin.astype(np.float32), 2 * resolution * spacing, levels.astype(np.uint32))
 
     @property
     def leaf_level(self) -> int:
@@ -82,25 +71,39 @@ class Grid:
 
     @property
     def top_level(self) -> int:
-        """Levels up to here are dense; two levels at least are sparse."""
-        return min(DENSE_TOP_LEVEL, self.leaf_level - 2)
+        """Levels up to here are dense and cover the whole cube, deeper ones the scene alone."""
+        return self.leaf_level - DENSE_LEVELS_BELOW_LEAF
 
     @property
     def resolution(self) -> int:
-        """Lattice points a side at the finest level."""
-        return 2 << self.leaf_level
+        """Lattice points along a side of the scene, half the cube's, at the finest level."""
+        return 1 << self.leaf_level
 
     @property
     def voxel_m(self) -> float:
         """Metres between points of the finest lattice."""
-        return self.size / self.resolution
+        return self.size / (2 * self.resolution)
+
+    def first_block(self, exponent: int) -> int:
+        """First 64-cell block of the grid with 2^exponent cells a side (lib/node_bits.glsl)."""
+        return sum(self.grid_blocks(k) for k in range(exponent))
+
+    def grid_blocks(self, exponent: int) -> int:
+        """64-cell blocks of that grid: all cells, or from top_level + 2 on the scene's."""
+        side_log2 = exponent if exponent <= self.top_level + 1 else exponent - 1
+        return 1 if side_log2 < 2 else 8 ** (side_log2 - 2)
 
     @property
     def block_count(self) -> int:
         """64-node blocks of all levels together."""
-        return grid_first_block(self.leaf_level + 1)
+        return self.first_block(self.leaf_level + 1)
 
     @property
     def point_block_count(self) -> int:
         """64-point blocks of the lattices of all levels together."""
-        return grid_first_block(self.leaf_level + 2)
+        return self.first_block(self.leaf_level + 2)
+
+    @property
+    def dense_nodes(self) -> int:
+        """Nodes of the dense levels."""
+        return octal_sum(self.top_level + 1)

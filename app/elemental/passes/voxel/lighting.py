@@ -10,7 +10,7 @@ from elemental.gpu.graph import Graph
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.voxel import sizing
 from elemental.passes.voxel.build import build
-from elemental.passes.voxel.grid import Grid, dense_node_count
+from elemental.passes.voxel.grid import Grid
 from elemental.passes.voxel.light import compress, filter_levels, light_voxels
 from elemental.passes.voxel.octree import Capacity, Counts, Octree
 from elemental.passes.voxel.voxelize import voxelize
@@ -101,7 +101,7 @@ class VoxelLighting:
         return {
             "voxel_fragments": counts.fragments,
             "voxel_fragments_dropped": counts.fragments_dropped,
-            "octree_nodes": dense_node_count(grid.top_level) + 8 * counts.tiles,
+            "octree_nodes": grid.dense_nodes + 8 * counts.tiles,
             "octree_nodes_dropped": 8 * counts.tiles_dropped,
             "octree_bricks": counts.bricks,
             "octree_bricks_dropped": counts.bricks_dropped,

@@ -12,7 +12,7 @@ from elemental.gpu.device import Device
 from elemental.gpu.formats import RGBA8
 from elemental.gpu.refs import Ref, Sampled
 from elemental.gpu.resources import Buffer
-from elemental.passes.voxel.grid import Grid, dense_node_count
+from elemental.passes.voxel.grid import Grid
 
 CATEGORY = "octree"
 BRICK_TEXELS = (3, 3, 18)
@@ -154,12 +154,11 @@ class Octree(Survey):
 
     def __init__(self, device: Device, grid: Grid, capacity: Capacity, max_emission: float) -> None:
         super().__init__(device, grid, capacity, max_emission)
-        dense = dense_node_count(grid.top_level)
 
         def pool(name: str, nbytes: int) -> Buffer:
             return device.buffer(f"octree.{name}", max(nbytes, 16), category=CATEGORY)
 
-        self.nodes = pool("nodes", (dense + capacity.tiles * 8) * _struct_bytes("Node"))
+        self.nodes = pool("nodes", (grid.dense_nodes + capacity.tiles * 8) * _struct_bytes("Node"))
         self.bricks = pool("bricks", capacity.bricks * _struct_bytes("Brick"))
         attribute_bytes = 8 * _struct_bytes("VoxelAttributes")
         self.attributes = pool("attributes", capacity.leaves * attribute_bytes)
