@@ -97,5 +97,7 @@ def _rgba8(image: PIL.Image.Image) -> npt.NDArray[np.uint8]:
         grey = np.asarray(image, dtype=np.float64) / 65535.0
         level = (np.clip(grey, 0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)
         return np.stack([level, level, level, np.full_like(level, 255)], axis=-1)
-    rgba: npt.NDArray[Any] = np.asarray(image.convert("RGBA"), dtype=np.uint8)
+    direct = image.mode in ("1", "L", "LA", "P", "PA", "RGB", "RGBA", "La", "RGBa", "RGBX")
+    rgb = image if direct else image.convert("RGB")  # CMYK and the like
+    rgba: npt.NDArray[Any] = np.asarray(rgb.convert("RGBA"), dtype=np.uint8)
     return rgba

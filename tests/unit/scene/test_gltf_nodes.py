@@ -97,7 +97,7 @@ def test_flattening_scale_leaves_the_mesh_out(scale: list[float], tmp_path: Path
     builder.add(TRIANGLE)
     scene = builder.load(tmp_path)
     assert len(scene.instances) == 1
-    assert "nodes[0]: a scale of 0" in scene.notes[0]
+    assert "1 meshes are left out, whose nodes have a scale of 0" in scene.notes[0]
 
 
 def test_lights(tmp_path: Path) -> None:

@@ -195,3 +195,12 @@ def test_edited_hdr_files_load_or_are_refused(
         return
     assert np.isfinite(radiance).all()
     assert radiance.min() >= 0.0
+
+
+def test_cmyk_jpeg() -> None:
+    stream = io.BytesIO()
+    PIL.Image.new("CMYK", (8, 8), (0, 255, 255, 0)).save(stream, "JPEG", quality=95)
+    red, green, blue, alpha = read_png_jpeg_webp(stream.getvalue())[4, 4].tolist()
+    assert red > 230
+    assert max(green, blue) < 60
+    assert alpha == 255

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -22,24 +23,34 @@ Word = TypeVar("Word", bound=str)
 
 @dataclass
 class Report:
-    """What a file could not be honoured in (`warnings`) and what was done to it (`notes`)."""
+    """What a file could not be honoured in (`warnings`) and what was done to it (`notes`).
+
+    Both are ordered sets of lines.
+    """
 
     file: Path
-    warnings: list[str] = field(default_factory=list)
-    notes: list[str] = field(default_factory=list)
+    warnings: dict[str, None] = field(default_factory=dict)
+    notes: dict[str, None] = field(default_factory=dict)
+    _counts: Counter[str] = field(default_factory=Counter)
 
     def warn(self, where: str, reason: str) -> None:
         """One line, said once."""
-        self._add(self.warnings, where, reason)
+        self.warnings[self._line(where, reason)] = None
 
     def note(self, where: str, reason: str) -> None:
         """One line, said once."""
-        self._add(self.notes, where, reason)
+        self.notes[self._line(where, reason)] = None
 
-    def _add(self, lines: list[str], where: str, reason: str) -> None:
-        line = str(InputError(self.file, where, reason))
-        if line not in lines:
-            lines.append(line)
+    def count(self, what: str, number: int = 1) -> None:
+        """Things of one kind, however many: one note in the end."""
+        self._counts[what] += number
+
+    def note_counts(self) -> None:
+        for what, number in self._counts.items():
+            self.note("", f"{number} {what}")
+
+    def _line(self, where: str, reason: str) -> str:
+        return str(InputError(self.file, where, reason))
 
 
 @dataclass(frozen=True)

@@ -73,8 +73,7 @@ class Meshes:
         primitive.indices = self._read_indices(field, source, mode, len(primitive.positions))
         primitive, dropped = mesh_attributes.drop_degenerate(primitive)
         if dropped:
-            reason = f"{dropped} triangles without area are dropped"
-            self._document.report.note(field.path, reason)
+            self._document.report.count("triangles without area are dropped", dropped)
         if not len(primitive.indices):
             return None
         primitive = mesh_attributes.drop_unused_vertices(primitive)
