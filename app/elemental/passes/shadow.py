@@ -111,7 +111,7 @@ class ShadowMaps:
         else:
             if buffer is not None:
                 buffer.release()
-            self._buffers[name] = self._device.buffer(name, content)
+            self._buffers[name] = self._device.buffer(name, content, dynamic=True)
         self._uploaded[name] = content
 
 
