@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import io
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, redirect_stdout
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +17,7 @@ from elemental.core.errors import InputError
 from elemental.core.files import atomic_file, read_file
 from elemental.core.rgbe import decode_rgbe
 
+ERROR_DESCRIPTOR = 2
 PNG_JPEG_WEBP = ("PNG", "JPEG", "WEBP")
 
 
@@ -61,7 +65,8 @@ def read_exr(path: Path) -> npt.NDArray[np.float32]:
 
     encoded = read_file(path)
     try:
-        channels = OpenEXR.File(io.BytesIO(encoded), separate_channels=True).channels()
+        with _muted():
+            channels = OpenEXR.File(io.BytesIO(encoded), separate_channels=True).channels()
         planes = {name: np.asarray(channel.pixels) for name, channel in channels.items()}
     except Exception as error:  # the binding raises what OpenEXR's C++ throws
         raise InputError(path, "", f"not a readable OpenEXR file ({error})") from error
@@ -89,6 +94,20 @@ def write_exr(path: Path, rgb32f: npt.NDArray[np.float32]) -> None:
     channels = {"RGBA"[: pixels.shape[2]]: pixels}
     with atomic_file(path) as temporary:
         OpenEXR.File(header, channels).write(str(temporary))
+
+
+@contextmanager
+def _muted() -> Iterator[None]:
+    """Nothing printed: OpenEXR tells Python's output and C's error stream what it raises, too."""
+    with open(os.devnull, "wb") as nowhere:
+        kept = os.dup(ERROR_DESCRIPTOR)
+        os.dup2(nowhere.fileno(), ERROR_DESCRIPTOR)
+    try:
+        with redirect_stdout(io.StringIO()):
+            yield
+    finally:
+        os.dup2(kept, ERROR_DESCRIPTOR)
+        os.close(kept)
 
 
 def _rgba8(image: PIL.Image.Image) -> npt.NDArray[np.uint8]:

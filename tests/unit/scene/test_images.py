@@ -102,11 +102,13 @@ def test_nan_environment_is_refused(tmp_path: Path) -> None:
         read_environment(tmp_path / "a.exr")
 
 
-def test_broken_exr(tmp_path: Path) -> None:
-    write_exr(tmp_path / "a.exr", np.ones((8, 8, 3), np.float32))
-    (tmp_path / "b.exr").write_bytes((tmp_path / "a.exr").read_bytes()[:200])
+@pytest.mark.parametrize("length", [0, 3, 200, 400])
+def test_broken_exr(length: int, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    write_exr(tmp_path / "a.exr", RNG.random((8, 8, 3)).astype(np.float32))
+    (tmp_path / "b.exr").write_bytes((tmp_path / "a.exr").read_bytes()[:length])
     with pytest.raises(InputError, match="OpenEXR"):
         read_environment(tmp_path / "b.exr")
+    assert capfd.readouterr() == ("", "")
 
 
 @pytest.mark.parametrize("width", [5, 8, 300])
