@@ -39,8 +39,11 @@ class GpuScene:
         geometry = scene_pack.pack_geometry(scene)
         commands, numbers, self._batches = scene_pack.pack_draws(scene, geometry)
 
+        self._buffers: list[Buffer] = []
+
         def upload(name: str, values: Array) -> Buffer:
-            return device.buffer(f"scene.{name}", values, category="meshes")
+            self._buffers.append(device.buffer(f"scene.{name}", values, category="meshes"))
+            return self._buffers[-1]
 
         self.instances = upload("instances", scene_pack.pack_instances(scene))
         self.materials = upload("materials", scene_pack.pack_materials(scene))
@@ -56,6 +59,11 @@ class GpuScene:
             batch.instance: scene_pack.instance_center(scene, batch.instance)
             for batch in self.batches(BLEND)
         }
+
+    def release(self) -> None:
+        """Free everything."""
+        for held in (self._positions_only, self._vertices, self._textures, *self._buffers):
+            held.release()
 
     def batches(
         self, alpha_modes: Collection[AlphaMode], textured: bool | None = None
@@ -111,6 +119,12 @@ class MaterialTextures:
                 key = (slot in SRGB_SLOTS, number)
                 if number >= 0 and key not in self._sampled:
                     self._sampled[key] = _upload(device, scene.textures[number], *key, anisotropy)
+
+    def release(self) -> None:
+        """Free the textures."""
+        for sampled in (self._white, self._flat, *self._sampled.values()):
+            assert isinstance(sampled.texture, Texture)
+            sampled.texture.release()
 
     def sampled(self, slot: str, number: int) -> Sampled:
         """The texture to bind for a slot; -1 gives the neutral one."""

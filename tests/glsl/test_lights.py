@@ -1,0 +1,72 @@
+"""Punctual lights against the formulas of KHR_lights_punctual."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from elemental.core.layout import Block
+from elemental.gpu.device import Device
+from elemental.passes.shadow_plan import pack_lights
+from elemental.scene.model import Light
+from glsl.harness import run_glsl
+
+
+def light(kind: str, **fields: object) -> Light:
+    given = {
+        "name": kind,
+        "kind": kind,
+        "color": np.array([1.0, 0.5, 0.25], np.float32),
+        "intensity": 8.0,
+        "position": np.array([1.0, 2.0, 3.0], np.float32),
+        "direction": np.array([0.0, 0.0, -1.0], np.float32),
+        **fields,
+    }
+    return Light(**given)  # type: ignore[arg-type]
+
+
+def irradiance(device: Device, source: Light, points: np.ndarray) -> np.ndarray:
+    packed: Block = pack_lights([source], [-1], [0])
+    lights = device.buffer("lights", packed)
+    body = "sample_light(lights[0], p).irradiance"
+    values = run_glsl(
+        device, ["lib/lights.glsl"], body, {"p": points}, "vec3", reads={"Lights": lights}
+    )
+    lights.release()
+    return values
+
+
+def test_a_directional_light_is_its_illuminance_everywhere(device: Device) -> None:
+    points = np.random.default_rng(1).normal(size=(16, 3))
+    got = irradiance(device, light("directional"), points)
+    np.testing.assert_allclose(got, np.tile([8.0, 4.0, 2.0], (16, 1)), rtol=1e-6)
+
+
+def test_a_point_light_falls_with_the_square_of_the_distance(device: Device) -> None:
+    distance = np.linspace(0.1, 20, 50)
+    points = np.array([1.0, 2.0, 3.0]) + distance[:, None] * [0.6, 0.0, 0.8]
+    got = irradiance(device, light("point"), points)
+    np.testing.assert_allclose(got[:, 0], 8.0 / distance**2, rtol=1e-5)
+
+
+def test_range_windows_the_light_as_the_extension_says(device: Device) -> None:
+    """attenuation = max(min(1 - (d / range)^4, 1), 0) / d^2"""
+    distance = np.linspace(0.1, 8, 80)
+    points = np.array([1.0, 2.0, 3.0]) + distance[:, None] * [0.0, 1.0, 0.0]
+    got = irradiance(device, light("point", range=5.0), points)
+    want = 8.0 * np.clip(1 - (distance / 5.0) ** 4, 0, 1) / distance**2
+    np.testing.assert_allclose(got[:, 0], want, rtol=1e-4, atol=1e-6)
+    assert np.all(got[distance >= 5.0] == 0.0)
+
+
+def test_a_spot_s_edges_are_its_two_angles(device: Device) -> None:
+    inner, outer = 0.3, 0.6
+    angle = np.linspace(0.0, 1.0, 101)
+    points = np.array([1.0, 2.0, 3.0]) + np.stack(
+        [2 * np.sin(angle), np.zeros(101), -2 * np.cos(angle)], axis=1
+    )
+    got = irradiance(device, light("spot", inner_angle=inner, outer_angle=outer), points)
+    scale = 1.0 / max(0.001, np.cos(inner) - np.cos(outer))
+    want = np.clip(np.cos(angle) * scale - np.cos(outer) * scale, 0, 1) ** 2 * 8.0 / 4.0
+    np.testing.assert_allclose(got[:, 0], want, rtol=2e-4, atol=1e-5)
+    np.testing.assert_allclose(got[angle < inner - 1e-6, 0], 2.0, rtol=1e-4)
+    assert np.all(got[angle > outer + 1e-3] == 0.0)
