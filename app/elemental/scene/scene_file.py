@@ -65,7 +65,6 @@ Positive = Annotated[float, Field(gt=0.0, le=1e12)]
 NonNegative = Annotated[float, Field(ge=0.0, le=1e12)]
 Vec3 = Annotated[list[Number], Field(min_length=3, max_length=3)]
 Color = Annotated[list[NonNegative], Field(min_length=3, max_length=3)]
-Direction = Vec3
 HalfAngle = Annotated[float, Field(gt=0.0, le=90.0)]
 FieldOfView = Annotated[float, Field(ge=0.01, le=179.0)]
 Name = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[^\x00-\x1f\x7f]*$")]
@@ -88,7 +87,7 @@ class LightTable(Table):
     kind: Literal["directional", "point", "spot"]
     name: Name | None = None
     position: Vec3 | None = None
-    direction: Direction | None = None
+    direction: Vec3 | None = None
     color: Color = [1.0, 1.0, 1.0]
     intensity: NonNegative = 1.0
     range: Positive | None = None

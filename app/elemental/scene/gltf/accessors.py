@@ -65,10 +65,10 @@ class Accessors:
             self._integers[index] = raw[:, 0]
         return self._integers[index]
 
-    def layout(self, reference: Field) -> tuple[int, bool]:
-        """(count, normalized) of an accessor whose values are stored elsewhere, as by Draco."""
+    def is_normalized(self, reference: Field) -> bool:
+        """Whether integers stand for fractions; for values stored elsewhere, as by Draco."""
         accessor = self._accessors[reference.index(len(self._accessors), "accessors")]
-        return accessor.need("count").integer(low=1), accessor.flag("normalized")
+        return accessor.flag("normalized")
 
     def _read(self, accessor: Field) -> RawArray:
         dtype = COMPONENT_DTYPE[_component_type(accessor)]

@@ -128,7 +128,7 @@ class Meshes:
         values = source.attribute(name) if source else None
         if values is None:
             return self._accessors.floats(reference, widths)
-        _, normalized = self._accessors.layout(reference)
+        normalized = self._accessors.is_normalized(reference)
         if values.shape[1] not in widths:
             raise reference.error(f"Draco data of {values.shape[1]} components")
         return normalize(values) if normalized else values.astype(np.float32)
