@@ -159,7 +159,7 @@ def test_names_are_checked(device: Device, fill: Compute, double: Raster) -> Non
     with pytest.raises(GraphError, match="u_image is given in writes, but a sampler"):
         graph.raster(double, color=image, writes={"u_image": image})
     volume = graph.texture("volume", (8, 8, 8), RGBA16F)
-    with pytest.raises(GraphError, match="u_image is 2D, volume is 3D"):
+    with pytest.raises(GraphError, match="u_image: volume is 3D, the shader wants 2D"):
         graph.raster(double, color=image, reads={"u_image": volume})
     with pytest.raises(GraphError, match="one of threads, groups and indirect"):
         graph.compute(fill, writes={"o_image": image})

@@ -1,9 +1,14 @@
-"""From the GLSL names of a pass to units, views and barrier bits; no GL calls."""
+"""From the GLSL names of a pass to units, views and barrier bits; no GL calls.
+
+What a reference means at a slot (its *look*) depends on the slot and on the texture's description
+alone, so it is worked out once and kept with the slot; a frame only adds the resource.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from typing import NamedTuple
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +16,8 @@ import numpy.typing as npt
 from elemental.gpu import gl as c
 from elemental.gpu.program import IMAGE, SAMPLER, STORAGE_BLOCK, UNIFORM_BLOCK, Program, Slot
 from elemental.gpu.refs import (
+    AnyBuffer,
+    AnyTexture,
     BufferHandle,
     Layer,
     Mip,
@@ -18,7 +25,6 @@ from elemental.gpu.refs import (
     Sampled,
     SamplerKey,
     TextureHandle,
-    TextureRef,
 )
 from elemental.gpu.resources import Buffer, Texture, TextureDesc
 
@@ -29,41 +35,45 @@ class GraphError(Exception):
     """A pass that can't be recorded; the message names the shader and the name in question."""
 
 
-class SamplerBinding(NamedTuple):
-    """A texture unit of a pass."""
+@dataclass(frozen=True, slots=True, eq=False)
+class SamplerLook:
+    """A texture seen through a sampler."""
 
     unit: int
     target: int
-    resource: int
-    level: int
-    levels: int
-    layer: int
-    stencil: bool
     sampler: SamplerKey
+    view: tuple[int, int, int, int, bool] | None
+    """Arguments of Texture.view; None: the texture itself."""
+    barrier: int = c.TEXTURE_FETCH_BARRIER
 
 
-class ImageBinding(NamedTuple):
-    """An image unit of a pass."""
+@dataclass(frozen=True, slots=True, eq=False)
+class ImageLook:
+    """A texture level as an image."""
 
     unit: int
-    target: int
-    resource: int
+    view: tuple[int, int, int, int, bool] | None
     level: int
     layered: bool
     layer: int
     access: int
     format: int
+    barrier: int = c.SHADER_IMAGE_ACCESS_BARRIER
 
 
-class BlockBinding(NamedTuple):
-    """A storage block, or a uniform block filled from a buffer."""
+@dataclass(frozen=True, slots=True, eq=False)
+class BlockLook:
+    """A buffer as a storage block or as a uniform block."""
 
-    target: int
     unit: int
-    resource: int
+    target: int
+    barrier: int
 
 
-Binding = SamplerBinding | ImageBinding | BlockBinding
+Look = SamplerLook | ImageLook | BlockLook
+Bound = tuple[Look, AnyTexture | AnyBuffer]
+_Part = tuple[int, int, int]
+"""(level, layer, element of the sampler array); -1: all levels, all layers."""
 
 
 class NamePlan(NamedTuple):
@@ -122,109 +132,126 @@ def require_all(program: Program, missing: Iterable[str]) -> None:
         raise GraphError(f"{program.shader!r}: {', '.join(names)} not bound")
 
 
-def bind(
-    slot: Slot,
-    ref: Ref,
-    index_of: Callable[[Texture | TextureHandle | Buffer | BufferHandle], int],
-    program: Program,
-) -> tuple[list[Binding], list[int], int]:
-    """(bindings, resource indices, barrier bit) of ``ref`` at ``slot``."""
-    if slot.kind == SAMPLER:
-        refs = ref if isinstance(ref, (list, tuple)) else (ref,)
-        if slot.active and len(refs) != slot.count:
-            raise GraphError(
-                f"{program.shader!r}: {slot.name} takes {slot.count} textures, {len(refs)} given"
-            )
-        bindings: list[Binding] = [
-            _sampler(slot, element, offset, index_of, program)
-            for offset, element in enumerate(refs)
-        ]
-        return bindings, [item.resource for item in bindings], c.TEXTURE_FETCH_BARRIER
-    if slot.kind == IMAGE:
-        image = _image(slot, ref, index_of, program)
-        return [image], [image.resource], c.SHADER_IMAGE_ACCESS_BARRIER
+def check_block_size(slot: Slot, nbytes: int, program: Program) -> None:
+    """Raise GraphError where packed values do not fill the uniform block."""
+    if -(-slot.size // 16) != -(-nbytes // 16):
+        raise GraphError(
+            f"{program.shader!r}: block {slot.name} has {slot.size} bytes, {nbytes} given"
+        )
+
+
+def looks(slot: Slot, ref: Ref, program: Program) -> Sequence[Bound]:
+    """What is bound for ``ref`` at ``slot``: one (look, resource), or one for each array element.
+
+    Raises GraphError where it does not fit.
+    """
+    if isinstance(ref, (Texture, TextureHandle)):
+        known: Look | None = slot.looks.get(ref.desc)
+        if known is not None:
+            return ((known, ref),)
+    if slot.kind in (STORAGE_BLOCK, UNIFORM_BLOCK):
+        return (_block(slot, ref, program),)
+    bound = _elements(slot, ref, program)
+    if isinstance(ref, (Texture, TextureHandle)):
+        slot.looks[ref.desc] = bound[0][0]
+    return bound
+
+
+def _elements(slot: Slot, ref: Ref, program: Program) -> list[Bound]:
+    elements = ref if isinstance(ref, (list, tuple)) else (ref,)
+    if slot.active and len(elements) != slot.count:
+        raise GraphError(
+            f"{program.shader!r}: {slot.name} takes {slot.count} textures, {len(elements)} given"
+        )
+    return [_texture(slot, element, offset, program) for offset, element in enumerate(elements)]
+
+
+def _block(slot: Slot, ref: Ref, program: Program) -> Bound:
     if not isinstance(ref, (Buffer, BufferHandle)):
         raise GraphError(f"{program.shader!r}: {slot.name} is a block, {ref!r} is no buffer")
-    index = index_of(ref)
-    if slot.kind == STORAGE_BLOCK:
-        limit = program.storage_limit
-        if ref.nbytes > limit:
-            raise GraphError(
-                f"{program.shader!r}: {slot.name}: {ref.name} has {ref.nbytes} bytes, "
-                f"this driver binds at most {limit}"
-            )
-        block = BlockBinding(c.SHADER_STORAGE_BUFFER, slot.unit, index)
-        return [block], [index], c.SHADER_STORAGE_BARRIER
-    return [BlockBinding(c.UNIFORM_BUFFER, slot.unit, index)], [index], c.UNIFORM_BARRIER
+    storage = slot.kind == STORAGE_BLOCK
+    if storage and ref.nbytes > program.storage_limit:
+        raise GraphError(
+            f"{program.shader!r}: {slot.name}: {ref.name} has {ref.nbytes} bytes, "
+            f"this driver binds at most {program.storage_limit}"
+        )
+    look: BlockLook | None = slot.looks.get(None)
+    if look is None:
+        target = c.SHADER_STORAGE_BUFFER if storage else c.UNIFORM_BUFFER
+        barrier = c.SHADER_STORAGE_BARRIER if storage else c.UNIFORM_BARRIER
+        look = slot.looks[None] = BlockLook(slot.unit, target, barrier)
+    return look, ref
 
 
-def look_at(
-    ref: object, slot: Slot, program: Program
-) -> tuple[Texture | TextureHandle, int, int, int]:
-    """(texture, first level, levels, layer or -1) of a texture reference."""
-    if isinstance(ref, (Texture, TextureHandle)):
-        return ref, 0, ref.desc.mips, -1
-    if isinstance(ref, Mip):
-        texture, level, layer = ref.texture, ref.level, -1
-    elif isinstance(ref, Layer):
-        texture, level, layer = ref.texture, ref.level, ref.layer
+def _texture(slot: Slot, ref: object, offset: int, program: Program) -> Bound:
+    sampling: tuple[Any, ...] = ()
+    inner = ref
+    if isinstance(ref, Sampled):
+        inner = ref.texture
+        sampling = (ref.filter, ref.wrap, ref.compare, ref.border, ref.anisotropy, ref.stencil)
+        if slot.kind != SAMPLER:
+            raise GraphError(f"{program.shader!r}: {slot.name} is an image, it can't be sampled")
+    if isinstance(inner, (Texture, TextureHandle)):
+        texture, level, layer = inner, -1, -1
+    elif isinstance(inner, Mip):
+        texture, level, layer = inner.texture, inner.level, -1
+    elif isinstance(inner, Layer):
+        texture, level, layer = inner.texture, inner.level, inner.layer
     else:
         raise GraphError(f"{program.shader!r}: {slot.name} needs a texture, not {ref!r}")
-    desc = texture.desc
-    if not 0 <= level < desc.mips or not -1 <= layer < desc.slices:
-        raise GraphError(
-            f"{program.shader!r}: {slot.name}: {texture.name} has no level {level}, layer {layer}"
-        )
-    return texture, level, 1, layer
+    part = (level, layer, offset)
+    key = (texture.desc, part, sampling)
+    look: Look | None = slot.looks.get(key)
+    if look is None:
+        try:
+            make = _sampler_look if slot.kind == SAMPLER else _image_look
+            look = slot.looks[key] = make(slot, texture.desc, part, sampling)
+        except ValueError as error:
+            reason = f"{slot.name}: {texture.name} {error}"
+            raise GraphError(f"{program.shader!r}: {reason}") from None
+    return look, texture
 
 
-def _sampler(
-    slot: Slot,
-    ref: TextureRef,
-    offset: int,
-    index_of: Callable[[Texture | TextureHandle | Buffer | BufferHandle], int],
-    program: Program,
-) -> SamplerBinding:
-    stencil = False
-    if isinstance(ref, Sampled):
-        texture, level, levels, layer = look_at(ref.texture, slot, program)
-        default = "linear" if texture.desc.format.filterable or ref.compare else "nearest"
-        key = (ref.filter or default, ref.wrap, ref.compare, ref.border, ref.anisotropy)
-        stencil = ref.stencil
-        if slot.active and slot.shadow != ref.compare:
-            wanted = "with" if slot.shadow else "without"
-            raise GraphError(f"{program.shader!r}: {slot.name} is sampled {wanted} compare")
-    else:
-        texture, level, levels, layer = look_at(ref, slot, program)
-        linear = texture.desc.format.filterable or slot.shadow
-        key = ("linear" if linear else "nearest", "clamp", slot.shadow, 0.0, 1.0)
-    target = c.TEXTURE_2D if layer >= 0 else texture.desc.target
+def _sampler_look(
+    slot: Slot, desc: TextureDesc, part: _Part, sampling: tuple[Any, ...]
+) -> SamplerLook:
+    level, layer, offset = _checked(desc, part)
+    filter_, wrap, compare, border, anisotropy, stencil = sampling or (
+        None, "clamp", slot.shadow, 0.0, 1.0, False,
+    )  # fmt: skip
+    if slot.active and slot.shadow != compare:
+        raise ValueError("is sampled with compare" if compare else "is sampled without compare")
+    if layer >= 0 and desc.target == c.TEXTURE_3D:
+        raise ValueError("is 3D: a slice can't be sampled alone")
+    target = c.TEXTURE_2D if layer >= 0 else desc.target
     if slot.active and target != slot.target:
-        _check_viewable(slot, texture.desc, texture.name, layer, program)
+        _check_viewable(slot, desc, layer)
         target = slot.target
-    if layer >= 0 and texture.desc.target == c.TEXTURE_3D:
-        raise GraphError(f"{program.shader!r}: {slot.name}: a slice of 3D can't be sampled alone")
-    index = index_of(texture)
-    return SamplerBinding(slot.unit + offset, target, index, level, levels, layer, stencil, key)
+    smooth = desc.format.filterable or compare
+    key = (filter_ or ("linear" if smooth else "nearest"), wrap, compare, border, anisotropy)
+    levels = desc.mips if level < 0 else 1
+    view = (target, max(level, 0), levels, layer, stencil)
+    whole = view == (desc.target, 0, desc.mips, -1, False)
+    return SamplerLook(slot.unit + offset, target, key, None if whole else view)
 
 
-def _image(
-    slot: Slot,
-    ref: Ref,
-    index_of: Callable[[Texture | TextureHandle | Buffer | BufferHandle], int],
-    program: Program,
-) -> ImageBinding:
-    texture, level, _, layer = look_at(ref, slot, program)
-    desc = texture.desc
-    layered = layer < 0 and desc.target != c.TEXTURE_2D
-    target = desc.target
+def _image_look(slot: Slot, desc: TextureDesc, part: _Part, _: tuple[Any, ...]) -> ImageLook:
+    level, layer, offset = _checked(desc, part)
+    view = None
     if layer < 0 and slot.active and slot.target != desc.target:
-        _check_viewable(slot, desc, texture.name, layer, program)
-        target = slot.target
+        _check_viewable(slot, desc, layer)
+        view = (slot.target, 0, desc.mips, -1, False)
+    layered = layer < 0 and desc.target != c.TEXTURE_2D
     fmt = slot.image_format or desc.format.internal
-    index = index_of(texture)
-    first = max(layer, 0)
-    return ImageBinding(slot.unit, target, index, level, layered, first, slot.access, fmt)
+    unit = slot.unit + offset
+    return ImageLook(unit, view, max(level, 0), layered, max(layer, 0), slot.access, fmt)
+
+
+def _checked(desc: TextureDesc, part: _Part) -> _Part:
+    level, layer, _ = part
+    if not -1 <= level < desc.mips or not -1 <= layer < desc.slices:
+        raise ValueError(f"has no level {level}, layer {layer}")
+    return part
 
 
 _TARGET_NAMES = {
@@ -234,7 +261,7 @@ _TARGET_NAMES = {
 _FLAT = {c.TEXTURE_2D, c.TEXTURE_2D_ARRAY, c.TEXTURE_CUBE_MAP, c.TEXTURE_CUBE_MAP_ARRAY}
 
 
-def _check_viewable(slot: Slot, desc: TextureDesc, name: str, layer: int, program: Program) -> None:
+def _check_viewable(slot: Slot, desc: TextureDesc, layer: int) -> None:
     """glTextureView turns any flat kind into an array, and whole cubes into cubes."""
     flat = slot.target in _FLAT and desc.target in _FLAT
     slices = 1 if layer >= 0 else desc.slices
@@ -245,15 +272,5 @@ def _check_viewable(slot: Slot, desc: TextureDesc, name: str, layer: int, progra
         c.TEXTURE_CUBE_MAP_ARRAY: slices % 6 == 0,
     }
     if not flat or not fits[slot.target]:
-        raise GraphError(
-            f"{program.shader!r}: {slot.name} is {_TARGET_NAMES[slot.target]}, "
-            f"{name} is {_TARGET_NAMES[desc.target]}"
-        )
-
-
-def check_block_size(slot: Slot, values: npt.NDArray[np.void], program: Program) -> None:
-    """Raise GraphError where a packed array does not fill the uniform block."""
-    if slot.active and -(-slot.size // 16) != -(-values.nbytes // 16):
-        raise GraphError(
-            f"{program.shader!r}: block {slot.name} has {slot.size} bytes, {values.nbytes} given"
-        )
+        wanted, given = _TARGET_NAMES[slot.target], _TARGET_NAMES[desc.target]
+        raise ValueError(f"is {given}, the shader wants {wanted}")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import moderngl
 
 from elemental.gpu import gl as c
-from elemental.gpu.binding import GraphError, bind, require_all
+from elemental.gpu.binding import GraphError, Look, looks, require_all
 from elemental.gpu.refs import AnyBuffer, BufferHandle, Ref, TextureHandle
 from elemental.gpu.resources import Buffer, VertexInput
 from elemental.gpu.state import RasterState
@@ -49,15 +49,15 @@ class Encoder:
         self._missing.discard(name)
         if not slot.active:
             return
+        bindings: list[tuple[Look, int]] = []
         physical: list[Any] = []
-
-        def index_of(resource: Any) -> int:
-            transient = isinstance(resource, (TextureHandle, BufferHandle))
-            physical.append(resource.physical if transient else resource)
-            return len(physical) - 1
-
-        bindings, _, bit = bind(slot, ref, index_of, program)
-        self._executor.barrier([(resource, bit, False) for resource in physical])
+        for number, (look, resource) in enumerate(looks(slot, ref, program)):
+            bindings.append((look, number))
+            if isinstance(resource, (TextureHandle, BufferHandle)):
+                physical.append(resource.physical)
+            else:
+                physical.append(resource)
+        self._executor.barrier([(resource, bindings[0][0].barrier, False) for resource in physical])
         self._executor.bind(bindings, physical)
 
     def set(self, **changes: Any) -> None:

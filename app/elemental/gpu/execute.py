@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from elemental.gpu import gl as c
 from elemental.gpu import state as raster_state
-from elemental.gpu.binding import Binding, BlockBinding, ImageBinding, SamplerBinding
+from elemental.gpu.binding import BlockLook, ImageLook, Look, SamplerLook
 from elemental.gpu.encode import Encoder
 from elemental.gpu.passes import (
     ClearBuffer,
@@ -44,7 +44,7 @@ class Executor:
         self._kept: list[tuple[Hashable, Texture | Buffer, TextureHandle | BufferHandle]] = []
         self._encoded: dict[str, bytes] = {}
         self._physical: list[Any] = []
-        self._units: dict[int, tuple[int, int]] = {}
+        self._units: dict[int, int] = {}
         self._unit_samplers: dict[int, int] = {}
         self._images: dict[int, tuple[int, ...]] = {}
         self._blocks: dict[tuple[int, int], int] = {}
@@ -160,41 +160,42 @@ class Executor:
 
     # Bindings ----------------------------------------------------------------------------------
 
-    def bind(self, bindings: Sequence[Binding], physical: Sequence[Any]) -> None:
+    def bind(self, bindings: Sequence[tuple[Look, int]], physical: Sequence[Any]) -> None:
         """Bind textures, images and blocks, skipping what is bound already."""
         gl = self.gl
-        for binding in bindings:
-            if type(binding) is SamplerBinding:
-                self._bind_sampler(binding, physical[binding.resource])
-            elif type(binding) is BlockBinding:
-                target, unit, resource = binding
+        for look, resource in bindings:
+            if look.__class__ is SamplerLook:
+                self._bind_sampler(look, physical[resource])
+            elif look.__class__ is BlockLook:
                 glo = physical[resource].glo
-                if self._blocks.get((target, unit)) != glo:
-                    self._blocks[target, unit] = glo
-                    gl.glBindBufferBase(target, unit, glo)
-            elif type(binding) is ImageBinding:
-                unit, target, resource, level, layered, layer, access, fmt = binding
-                texture = physical[resource]
-                glo = texture.view(target, 0, texture.desc.mips, -1)
-                wanted = (glo, level, layered, layer, access, fmt)
-                if self._images.get(unit) != wanted:
-                    self._images[unit] = wanted
-                    gl.glBindImageTexture(unit, *wanted)
+                place = (look.target, look.unit)
+                if self._blocks.get(place) != glo:
+                    self._blocks[place] = glo
+                    gl.glBindBufferBase(look.target, look.unit, glo)
+            elif look.__class__ is ImageLook:
+                self._bind_image(look, physical[resource])
 
-    def _bind_sampler(self, binding: SamplerBinding, texture: Texture) -> None:
-        unit, target, _, level, levels, layer, stencil, key = binding
+    def _bind_sampler(self, look: SamplerLook, texture: Texture) -> None:
         gl = self.gl
-        glo = texture.view(target, level, levels, layer, stencil)
-        if self._units.get(unit) != (target, glo):
-            self._units[unit] = (target, glo)
+        unit = look.unit
+        glo = texture.glo if look.view is None else texture.view(*look.view)
+        if self._units.get(unit) != glo:
+            self._units[unit] = glo
             if self._active_unit != unit:
                 self._active_unit = unit
                 gl.glActiveTexture(c.TEXTURE0 + unit)
-            gl.glBindTexture(target, glo)
-        sampler = self._samplers.get(key) or self._make_sampler(key)
+            gl.glBindTexture(look.target, glo)
+        sampler = self._samplers.get(look.sampler) or self._make_sampler(look.sampler)
         if self._unit_samplers.get(unit) != sampler:
             self._unit_samplers[unit] = sampler
             gl.glBindSampler(unit, sampler)
+
+    def _bind_image(self, look: ImageLook, texture: Texture) -> None:
+        glo = texture.glo if look.view is None else texture.view(*look.view)
+        wanted = (glo, look.level, look.layered, look.layer, look.access, look.format)
+        if self._images.get(look.unit) != wanted:
+            self._images[look.unit] = wanted
+            self.gl.glBindImageTexture(look.unit, *wanted)
 
     def texture_unit_changed(self) -> None:
         """The active texture unit was changed by an upload or an allocation."""

@@ -13,11 +13,10 @@ import numpy as np
 
 from elemental.gpu import gl as c
 from elemental.gpu.binding import (
-    Binding,
     GraphError,
     Params,
-    bind,
     check_block_size,
+    looks,
     name_plan,
     require_all,
 )
@@ -280,25 +279,23 @@ class Graph:
         params: Params,
     ) -> frozenset[str]:
         plan = name_plan(program, reads, writes, params)
-        bindings: list[Binding] = node.bindings
-        for slot, ref in zip(plan.reads, reads.values(), strict=True):
-            made, indices, bit = bind(slot, ref, self._index, program)
-            node.reads += indices
-            if slot.unit >= 0:
-                bindings += made
-                for index in indices:
-                    node.accesses.append((index, bit, False))
-        for slot, ref in zip(plan.writes, writes.values(), strict=True):
-            made, indices, bit = bind(slot, ref, self._index, program)
-            node.modifies += indices
-            if slot.unit >= 0:
-                bindings += made
-                for index in indices:
-                    node.accesses.append((index, bit, True))
+        bindings, accesses = node.bindings, node.accesses
+        for slots, refs, used, written in (
+            (plan.reads, reads, node.reads, False),
+            (plan.writes, writes, node.modifies, True),
+        ):
+            for slot, ref in zip(slots, refs.values(), strict=True):
+                for look, resource in looks(slot, ref, program):
+                    index = resource.index if resource.graph is self else self._index(resource)
+                    used.append(index)
+                    if slot.unit >= 0:
+                        bindings.append((look, index))
+                        accesses.append((index, look.barrier, written))
         for slot, values in zip(plan.params, params.values(), strict=True):
             if slot.unit >= 0:
-                check_block_size(slot, values, program)
                 raw = values.tobytes()
+                if len(raw) != slot.size:
+                    check_block_size(slot, len(raw), program)
                 node.params.append((slot.unit, self.device.params.add(raw), len(raw)))
         return plan.missing
 

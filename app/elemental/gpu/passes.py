@@ -9,7 +9,7 @@ from elemental.gpu.program import Program
 from elemental.gpu.state import RasterState
 
 if TYPE_CHECKING:
-    from elemental.gpu.binding import Binding
+    from elemental.gpu.binding import Look
     from elemental.gpu.encode import Encoder
 
 Attachment = tuple[int, int, int]
@@ -32,7 +32,7 @@ class Pass:
         self.has_side_effect = False
         self.accesses: list[tuple[int, int, bool]] = []
         """(resource, barrier bit of the use, shader write)."""
-        self.bindings: list[Binding] = []
+        self.bindings: list[tuple[Look, int]] = []
         self.params: list[tuple[int, int, int]] = []
         """(uniform binding, offset in the frame's segment, bytes)."""
 

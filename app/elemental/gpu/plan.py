@@ -66,38 +66,38 @@ def schedule(
     in declaration order, is read in its final version, so its writers run first.
     Raises PlanError for a cycle or for a transient that is read and never written.
     """
-    needs, follows, late = _edges(passes, resources, persistent)
+    needs, late = _needs(passes, resources, persistent)
     live = _live(passes, needs, persistent, kept)
     order = [index for index, alive in enumerate(live) if alive]
     if late:
-        order = _sorted(passes, order, needs, follows)
+        order = _sorted(passes, order, needs, _follows(passes, persistent))
     births, deaths = _lifetimes(passes, order, persistent, kept)
     culled = [index for index, alive in enumerate(live) if not alive]
     return Schedule(order, culled, births, deaths)
 
 
-def _edges(
+def _needs(
     passes: Sequence[PlannedPass], resources: Sequence[str], persistent: Collection[int]
-) -> tuple[list[set[int]], list[set[int]], bool]:
-    """(true dependencies, pure order dependencies, whether a read precedes its write)."""
+) -> tuple[list[set[int]], bool]:
+    """(passes whose results each pass uses, whether a read precedes its write)."""
     needs: list[set[int]] = []
-    follows: list[set[int]] = []
     writer: dict[int, int] = {}
-    readers: dict[int, list[int]] = {}
     early_reads: dict[int, list[int]] = {}
     for index, item in enumerate(passes):
-        need = {writer[r] for r in (*item.reads, *item.modifies) if r in writer}
-        follow = {writer[r] for r in item.overwrites if r in writer}
+        need: set[int] = set()
         for resource in item.reads:
-            known = resource in writer or resource in persistent
-            (readers if known else early_reads).setdefault(resource, []).append(index)
-        for resource in (*item.modifies, *item.overwrites):
-            follow.update(readers.pop(resource, ()))
+            if resource in writer:
+                need.add(writer[resource])
+            elif resource not in persistent:
+                early_reads.setdefault(resource, []).append(index)
+        for resource in item.modifies:
+            if resource in writer:
+                need.add(writer[resource])
+            writer[resource] = index
+        for resource in item.overwrites:
             writer[resource] = index
         need.discard(index)
-        follow.discard(index)
         needs.append(need)
-        follows.append(follow)
     for resource, indices in early_reads.items():
         final = writer.get(resource)
         if final is None or indices == [final]:
@@ -105,7 +105,25 @@ def _edges(
             raise PlanError(f"pass {reader} reads {resources[resource]}, which no pass writes")
         for index in indices:
             needs[index].add(final)
-    return needs, follows, bool(early_reads)
+    return needs, bool(early_reads)
+
+
+def _follows(passes: Sequence[PlannedPass], persistent: Collection[int]) -> list[set[int]]:
+    """Passes that each pass must not overtake, as it destroys what they read or wrote."""
+    follows: list[set[int]] = []
+    writer: dict[int, int] = {}
+    readers: dict[int, list[int]] = {}
+    for index, item in enumerate(passes):
+        follow = {writer[r] for r in item.overwrites if r in writer}
+        for resource in item.reads:
+            if resource in writer or resource in persistent:
+                readers.setdefault(resource, []).append(index)
+        for resource in (*item.modifies, *item.overwrites):
+            follow.update(readers.pop(resource, ()))
+            writer[resource] = index
+        follow.discard(index)
+        follows.append(follow)
+    return follows
 
 
 def _live(

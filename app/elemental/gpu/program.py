@@ -69,6 +69,8 @@ class Slot:
     """How an image is accessed."""
     shadow: bool = False
     """True for a depth-compare sampler."""
+    looks: dict[Any, Any] = field(default_factory=dict)
+    """How references were found to be bound here; see gpu/binding.py."""
 
     @property
     def active(self) -> bool:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import ctypes
 import itertools
+import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import moderngl
 import numpy as np
@@ -21,41 +22,59 @@ _serial = itertools.count(1)
 _FACES = 6
 
 
-class TextureDesc(NamedTuple):
-    """What a texture is made of; equal descriptions share pooled targets."""
+class TextureDesc:
+    """What a texture is made of. Equal descriptions are one object and share pooled targets."""
 
+    __slots__ = ("cube", "format", "layers", "mips", "nbytes", "size", "slices", "target")
     size: tuple[int, ...]
     """(width, height) or (width, height, depth) texels."""
     format: Format
-    mips: int = 1
-    layers: int | None = None
+    mips: int
+    layers: int | None
     """Layers of an array (of cubes, where ``cube``); None: no array."""
-    cube: bool = False
+    cube: bool
+    target: int
+    """GL texture target."""
+    slices: int
+    """Two-dimensional images at level 0: depth, layers or faces."""
+    nbytes: int
+    """Bytes of all levels, without the driver's padding."""
 
-    @property
-    def target(self) -> int:
-        """GL texture target."""
-        if self.cube:
-            return c.TEXTURE_CUBE_MAP if self.layers is None else c.TEXTURE_CUBE_MAP_ARRAY
-        if len(self.size) == 3:
-            return c.TEXTURE_3D
-        return c.TEXTURE_2D if self.layers is None else c.TEXTURE_2D_ARRAY
+    _known: ClassVar[dict[tuple[object, ...], TextureDesc]] = {}
 
-    @property
-    def slices(self) -> int:
-        """Two-dimensional images at level 0: depth, layers or faces."""
-        if len(self.size) == 3:
-            return self.size[2]
-        return (self.layers or 1) * (_FACES if self.cube else 1)
+    def __new__(
+        cls,
+        size: tuple[int, ...],
+        format: Format,
+        mips: int = 1,
+        layers: int | None = None,
+        cube: bool = False,
+    ) -> TextureDesc:
+        """The one description of these values."""
+        key = (size, format, mips, layers, cube)
+        known = cls._known.get(key)
+        if known is None:
+            known = cls._known[key] = super().__new__(cls)
+            known.size, known.format, known.mips = size, format, mips
+            known.layers, known.cube = layers, cube
+            known.target = _target(size, layers, cube)
+            known.slices = size[2] if len(size) == 3 else (layers or 1) * (_FACES if cube else 1)
+            extents = [level_size(size, level) for level in range(mips)]
+            texels = sum(math.prod(extent) for extent in extents)
+            flat = 1 if len(size) == 3 else known.slices
+            known.nbytes = texels * flat * format.texel_bytes
+        return known
 
-    @property
-    def nbytes(self) -> int:
-        """Bytes of all levels, without the driver's padding."""
-        texels = 0
-        for level in range(self.mips):
-            size = level_size(self.size, level)
-            texels += size[0] * size[1] * (size[2] if len(size) == 3 else self.slices)
-        return texels * self.format.texel_bytes
+    def __repr__(self) -> str:
+        return f"TextureDesc({self.size}, {self.format}, {self.mips}, {self.layers}, {self.cube})"
+
+
+def _target(size: tuple[int, ...], layers: int | None, cube: bool) -> int:
+    if cube:
+        return c.TEXTURE_CUBE_MAP if layers is None else c.TEXTURE_CUBE_MAP_ARRAY
+    if len(size) == 3:
+        return c.TEXTURE_3D
+    return c.TEXTURE_2D if layers is None else c.TEXTURE_2D_ARRAY
 
 
 def level_size(size: tuple[int, ...], level: int) -> tuple[int, ...]:

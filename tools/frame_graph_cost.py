@@ -1,0 +1,146 @@
+#!/usr/bin/env python3
+"""CPU cost of the frame graph: microseconds of Python a pass, with and without the driver.
+
+    tools/frame_graph_cost.py [--passes 60] [--frames 200]
+
+Each pass is of middling size: three samplers, a storage buffer, an image, two uniform blocks.
+"without the driver" replaces every GL call by an empty function, so it is the Python alone (the
+budget is 20 µs); "with" adds the driver's share, on dispatches of no groups.
+"""
+
+from __future__ import annotations
+
+import argparse
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import numpy as np
+
+from elemental.gpu.device import Device
+from elemental.gpu.formats import RGBA16F
+from elemental.gpu.graph import Graph
+from elemental.gpu.shaders import Compute, Raster
+
+BINDINGS = """
+uniform sampler2D u_a; uniform sampler2D u_b; uniform sampler2D u_c;
+layout(std430) readonly buffer Values { vec4 values[]; };
+layout(std140) uniform First { vec4 first; };
+layout(std140) uniform Second { vec4 second; };
+vec4 all() { return texelFetch(u_a, ivec2(0), 0) + texelFetch(u_b, ivec2(0), 0)
+    + texelFetch(u_c, ivec2(0), 0) + values[0] + first + second; }
+"""
+COMPUTE = f"""layout(local_size_x = 8, local_size_y = 8) in;
+{BINDINGS}
+layout(rgba16f) writeonly uniform image2D o_image;
+void main() {{ imageStore(o_image, ivec2(gl_GlobalInvocationID.xy), all()); }}
+"""
+VERTEX = "void main() { gl_Position = vec4(0.0); }\n"
+FRAGMENT = f"{BINDINGS}\nout vec4 o_color;\nvoid main() {{ o_color = all(); }}\n"
+SIZE = (16, 16)
+
+
+class Workload:
+    """Frames of ``passes`` passes, compute and raster in turn, each reading the ones before."""
+
+    def __init__(self, device: Device, folder: Path, passes: int) -> None:
+        self.device, self.passes = device, passes
+        for name, text in (("c.comp", COMPUTE), ("v.vert", VERTEX), ("f.frag", FRAGMENT)):
+            (folder / f"{name}.glsl").write_text(text)
+        self.compute = Compute(folder / "c.comp.glsl")
+        self.raster = Raster(folder / "v.vert.glsl", folder / "f.frag.glsl")
+        self.values = device.buffer("values", np.zeros(16, np.float32))
+        self.params = {"First": np.zeros((), [("x", "f4", 4)]), "Second": np.ones((), "4f4")}
+
+    def declare(self) -> Graph:
+        """A frame, not yet run."""
+        graph = self.device.begin_frame()
+        images = []
+        for index in range(3):
+            images.append(graph.texture(f"start {index}", SIZE, RGBA16F))
+            graph.clear_texture(images[-1])
+        for index in range(self.passes):
+            target = graph.texture(f"target {index}", like=images[-1])
+            a, b, c = images[-3:]
+            reads = {"u_a": a, "u_b": b, "u_c": c, "Values": self.values}
+            if index % 2:
+                graph.compute(
+                    self.compute, reads=reads, writes={"o_image": target}, params=self.params,
+                    groups=(0, 1, 1),
+                )  # fmt: skip
+            else:
+                graph.raster(self.raster, color=target, reads=reads, params=self.params, vertices=0)
+            images.append(target)
+        graph.keep(images[-1])
+        return graph
+
+    def measure(self, frames: int) -> tuple[float, float]:
+        """Median (declaring, running) of a frame in µs a pass."""
+        declared, ran = [], []
+        for _ in range(frames):
+            start = time.perf_counter()
+            graph = self.declare()
+            middle = time.perf_counter()
+            graph.execute()
+            end = time.perf_counter()
+            declared.append(middle - start)
+            ran.append(end - middle)
+        scale = 1e6 / (self.passes + 3)
+        return median(declared) * scale, median(ran) * scale
+
+
+@contextmanager
+def without_driver(device: Device, workload: Workload) -> Iterator[None]:
+    """Replace every GL call of a warm device by an empty function."""
+
+    def nothing(*_: Any) -> int:
+        return 0x911A  # a signalled fence
+
+    def available(_query: int, _parameter: int, answer: Any) -> None:
+        answer._obj.value = 1
+
+    class Nothing:
+        def __getattr__(self, _: str) -> Callable[..., int]:
+            return nothing
+
+    gl = device.gl
+    real = {name: value for name, value in vars(gl).items() if name.startswith("gl")}
+    programs = [device.program(workload.compute), device.program(workload.raster)]
+    kept = [(program, program.mgl, dict(program.vertex_arrays)) for program in programs]
+    for name in real:
+        setattr(gl, name, available if name == "glGetQueryObjectiv" else nothing)
+    for program, _, _ in kept:
+        program.mgl = Nothing()
+        program.vertex_arrays.update(dict.fromkeys(program.vertex_arrays, Nothing()))
+    yield
+    for program, mgl, vertex_arrays in kept:
+        program.mgl, program.vertex_arrays = mgl, vertex_arrays
+    for name, value in real.items():
+        setattr(gl, name, value)
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--passes", type=int, default=60)
+    parser.add_argument("--frames", type=int, default=200)
+    options = parser.parse_args()
+    device = Device.headless()
+    with tempfile.TemporaryDirectory() as folder:
+        workload = Workload(device, Path(folder), options.passes)
+        workload.measure(10)
+        driver = workload.measure(options.frames)
+        device.finish()
+        with without_driver(device, workload):
+            python = workload.measure(options.frames)
+    print(f"{device.info.renderer}; {options.passes} passes a frame, µs a pass")
+    for name, (declare, run) in (("without the driver", python), ("with the driver", driver)):
+        print(f"{name:20} declare {declare:6.2f}  run {run:6.2f}  sum {declare + run:6.2f}")
+
+
+if __name__ == "__main__":
+    main()
