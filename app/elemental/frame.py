@@ -178,7 +178,8 @@ class Renderer:
 
     def read(self, frame: Frame) -> npt.NDArray[Any]:
         """(H, W, 4) float32 of a linear frame, uint8 display codes of another; row 0 on top."""
-        return np.flipud(frame.image.read())
+        pixels = np.flipud(frame.image.read())
+        return pixels.astype(np.float32) if frame.is_linear else pixels
 
     def release(self) -> None:
         """Free everything on the device."""
@@ -186,6 +187,7 @@ class Renderer:
             self._voxels.release()
         self._sky.release()
         self._shadows.release()
+        self._meshes.release()
 
 
 def _shadow_settings(settings: Settings) -> ShadowSettings:
