@@ -120,6 +120,14 @@ def volume(soup: Soup) -> float:
     return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
 
 
+def _corner_angles(position: F64) -> F64:
+    """The triangles' inner angles, (3T,) radians: as weights they hide how quads are split."""
+    there = np.roll(position, -1, axis=1) - position
+    back = np.roll(position, 1, axis=1) - position
+    sine = np.linalg.norm(np.cross(there, back), axis=-1)
+    return np.asarray(np.arctan2(sine, np.einsum("tcj,tcj->tc", there, back)).ravel())
+
+
 def indexed(soup: Soup, crease_degrees: float, metres_per_tile: float) -> Mesh:
     """Normals smoothed over edges flatter than the crease, equal corners welded.
 
@@ -132,13 +140,14 @@ def indexed(soup: Soup, crease_degrees: float, metres_per_tile: float) -> Mesh:
     ids = _weld_ids(soup.position).ravel()
     order = np.argsort(ids, kind="stable")
     starts = np.searchsorted(ids[order], np.arange(ids.max() + 2))
+    angle = _corner_angles(soup.position)
     normal = np.empty((len(ids), 3))
     limit = np.cos(np.radians(crease_degrees)) - 1e-9
     for first, last in pairwise(starts):
         corners = order[first:last]
         faces = corners // 3
         near = unit[faces] @ unit[faces].T >= limit
-        normal[corners] = near @ scaled[faces]
+        normal[corners] = near @ (unit[faces] * angle[corners, None])
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     corner = np.concatenate(
         [soup.position.reshape(-1, 3), normal, soup.uv.reshape(-1, 2) / metres_per_tile], axis=1
