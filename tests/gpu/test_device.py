@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import subprocess
 import sys
 import textwrap
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from elemental.gpu import gl as c
+from elemental.gpu import library
 from elemental.gpu.device import FRAMES_IN_FLIGHT, Device, GpuMemoryError
 from elemental.gpu.formats import R8, RGBA8, RGBA32F
 from elemental.gpu.graph import Graph
@@ -92,6 +95,38 @@ def test_an_include_that_a_reload_brings_in_is_watched(device: Device, sources: 
     _touch(lib, "float f() { return 3.0; }\n")
     assert device.reload_changed_shaders() == []
     assert _value(device, shader) == 3
+
+
+def test_a_watched_edit_is_taken_up_and_idle_polls_ask_no_file(
+    device: Device, sources: Sources, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(device, "shader_root", sources.folder)
+    shader = sources.compute("values[0] = 1.0;", VALUES)
+    assert _value(device, shader) == 1
+    device.watch_shaders()
+    try:
+        time.sleep(0.3)  # until the watch is set up
+        device.reload_changed_shaders()
+        asked: list[Path] = []
+        real = library._stamp
+
+        def spy(file: Path) -> int:
+            asked.append(file)
+            return real(file)
+
+        monkeypatch.setattr(library, "_stamp", spy)
+        assert device.reload_changed_shaders() == []
+        assert asked == []
+        entry = Path(shader.stages[0][1])
+        _touch(entry, entry.read_text().replace("1.0", "2.0"))
+        for _ in range(100):
+            device.reload_changed_shaders()
+            if _value(device, shader) == 2:
+                break
+            time.sleep(0.05)
+        assert _value(device, shader) == 2
+    finally:
+        device.stop_watching_shaders()
 
 
 def test_compiler_errors_name_the_stage_s_file(device: Device, sources: Sources) -> None:
@@ -302,6 +337,24 @@ def test_no_context_gives_both_reasons() -> None:
         text=True, check=False,
     )  # fmt: skip
     assert "no OpenGL 4.3 context without a window; EGL: none; OSMesa: none" in ran.stderr
+
+
+def test_frames_leave_nothing_to_the_cycle_collector(device: Device, sources: Sources) -> None:
+    shader = sources.full_screen("o_color = vec4(1);")
+
+    def frame() -> None:
+        graph = device.begin_frame()
+        first, second = (graph.texture(name, (4, 4), RGBA8) for name in "ab")
+        graph.raster(shader, color=first)
+        graph.raster(shader, color=[first, second])
+        graph.keep(second)
+        graph.execute()
+
+    frame()
+    gc.collect()
+    for _ in range(5):
+        frame()
+    assert gc.collect() == 0
 
 
 def test_many_frames_do_not_grow(device: Device, sources: Sources) -> None:

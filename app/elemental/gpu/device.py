@@ -26,6 +26,7 @@ from elemental.gpu.readback import ReadbackQueue
 from elemental.gpu.resources import Buffer, Texture, TextureDesc, VertexInput
 from elemental.gpu.shaders import Shader
 from elemental.gpu.timers import PassTimers, PassTiming
+from elemental.gpu.watch import ShaderWatcher
 
 FRAMES_IN_FLIGHT = 3
 """Frames that the CPU may run ahead; without a bound a software driver's queue grows."""
@@ -69,6 +70,7 @@ class Device:
         """Number of graphs executed."""
         self._bytes: Counter[str] = Counter()
         self._fences: deque[int] = deque()
+        self._watcher: ShaderWatcher | None = None
         self.library = ShaderLibrary(self)
         self.executor = Executor(self)
         self.params = ParamRing(self)
@@ -183,11 +185,25 @@ class Device:
         """The compiled program. Raises ShaderError with ``file:line`` messages."""
         return self.library.get(shader)
 
+    def watch_shaders(self) -> None:
+        """From now on let a thread look out for edits, so that a frame without one asks no file."""
+        if self._watcher is None:
+            self._watcher = ShaderWatcher(self.shader_root)
+
+    def stop_watching_shaders(self) -> None:
+        """End the thread of ``watch_shaders``."""
+        if self._watcher is not None:
+            self._watcher.release()
+            self._watcher = None
+
     def reload_changed_shaders(self) -> list[str]:
         """Recompile what changed on disk; a failing edit keeps the last good program.
 
-        Returns the compilers' messages of the failures.
+        Returns the compilers' messages of the failures. Cheap enough for every frame once
+        ``watch_shaders`` was called.
         """
+        if self._watcher is not None and not self._watcher.take():
+            return []
         return self.library.reload_changed()
 
     def forget_vertex_input(self, serial: int) -> None:
@@ -265,6 +281,7 @@ class Device:
 
     def release(self) -> None:
         """Free everything the device made for itself, then the context."""
+        self.stop_watching_shaders()
         self.gl.glFinish()
         for part in (self.readbacks, self.executor, self.params, self.timers, self.library):
             part.release()

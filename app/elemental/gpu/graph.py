@@ -266,7 +266,11 @@ class Graph:
         if self._executed:
             raise GraphError("a graph runs once; begin a new frame")
         self._executed = True
-        self.device.executor.run(self)
+        try:
+            self.device.executor.run(self)
+        finally:  # handles know the graph: without this, each frame waits for the cycle collector
+            self.passes.clear()
+            self.resources.clear()
 
     # Binding -----------------------------------------------------------------------------------
 
