@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -158,6 +158,10 @@ class Rig:
         self.gpu.release()
         self.shadows.release()
         self.sky.release()
+
+
+MakeRig = Callable[..., Rig]
+"""Rig without its device; the fixture `rig`."""
 
 
 def read(g: Graph, target: TextureHandle) -> Array:

@@ -2,35 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 import pytest
 
-from elemental.gpu.device import Device
 from elemental.gpu.formats import D24S8, RGB10_A2, RGBA8, RGBA16F
 from elemental.scene.model import Texture, TextureSlot
-from gpu.rig import IDENTITY, Rig, at, camera, material, mesh, read, scene, vector
+from gpu.rig import IDENTITY, MakeRig, Rig, at, camera, material, mesh, read, scene, vector
 from shapes import box, quad, sphere
 
-Make = Callable[..., Rig]
 ABOVE = camera(vector(0, 3, 0), vector(0, 0, 0))
 CENTER = (32, 48)
-
-
-@pytest.fixture
-def rig(device: Device) -> Iterator[Make]:
-    """Maker of rigs that are released after the test."""
-    made = []
-
-    def make(*args: Any, **fields: Any) -> Rig:
-        made.append(Rig(device, *args, **fields))
-        return made[-1]
-
-    yield make
-    for item in made:
-        item.release()
 
 
 def channels(rig: Rig) -> dict[str, np.ndarray]:
@@ -51,13 +34,13 @@ def decoded_normal(code: int) -> np.ndarray:
     return n / np.linalg.norm(n)
 
 
-def test_targets_have_the_slide_s_formats(rig: Make) -> None:
+def test_targets_have_the_slide_s_formats(rig: MakeRig) -> None:
     _, _, gb = rig(scene((mesh(quad()), IDENTITY)), ABOVE).begin()
     formats = [gb.depth, gb.scene_color, gb.a, gb.b, gb.c, gb.d]
     assert [t.format for t in formats] == [D24S8, RGBA16F, RGB10_A2, RGBA8, RGBA8, RGBA8]
 
 
-def test_a_surface_is_stored_by_the_table(rig: Make) -> None:
+def test_a_surface_is_stored_by_the_table(rig: MakeRig) -> None:
     surface = material(
         base_color=vector(0.25, 0.5, 0.04, 1),
         metallic=0.25,
@@ -77,14 +60,14 @@ def test_a_surface_is_stored_by_the_table(rig: Make) -> None:
     np.testing.assert_allclose(got["d"][0], (np.log2(power) + 1) / 19 * 255, atol=0.51)
 
 
-def test_unlit_is_its_base_colour_and_says_so(rig: Make) -> None:
+def test_unlit_is_its_base_colour_and_says_so(rig: MakeRig) -> None:
     surface = material(base_color=vector(0.25, 0.5, 0.75, 1), unlit=True)
     got = channels(rig(scene((mesh(quad()), IDENTITY), materials=[surface]), ABOVE))
     np.testing.assert_array_equal(got["scene_color"][:3], [0.25, 0.5, 0.75])
     assert int(got["a"]) >> 30 == 0
 
 
-def test_normals_follow_a_scaled_and_turned_instance(rig: Make) -> None:
+def test_normals_follow_a_scaled_and_turned_instance(rig: MakeRig) -> None:
     stretched = IDENTITY.copy()
     stretched[:3, :3] = np.array([[0, 0, 2], [0, 0.5, 0], [-4, 0, 0]])
     world = rig(scene((mesh(sphere(rings=48), smooth=True), stretched)), ABOVE, size=(95, 63))
@@ -110,7 +93,7 @@ def test_normals_follow_a_scaled_and_turned_instance(rig: Make) -> None:
     ],
 )
 def test_textures_multiply_their_factors(
-    rig: Make, slot: str, pixel: tuple[int, ...], channel: str, codes: Any
+    rig: MakeRig, slot: str, pixel: tuple[int, ...], channel: str, codes: Any
 ) -> None:
     image = Texture("t", np.tile(np.array(pixel, np.uint8), (4, 4, 1)))
     surface = material(metallic=1.0 if "metallic" in slot else 0.0, emissive=vector(1, 1, 1))
@@ -122,7 +105,7 @@ def test_textures_multiply_their_factors(
     )
 
 
-def test_a_normal_map_bends_along_tangent_and_bitangent(rig: Make) -> None:
+def test_a_normal_map_bends_along_tangent_and_bitangent(rig: MakeRig) -> None:
     """Codes 128 +- 60 of 127: the tangent-space normal (60, 30, 100) / 127, normalized."""
     image = Texture("n", np.tile(np.array([188, 158, 228, 255], np.uint8), (4, 4, 1)))
     surface = material(normal_texture=TextureSlot(0))
@@ -135,7 +118,7 @@ def test_a_normal_map_bends_along_tangent_and_bitangent(rig: Make) -> None:
     np.testing.assert_allclose(got, want, atol=2e-3)
 
 
-def test_texture_transforms_choose_the_texel(rig: Make) -> None:
+def test_texture_transforms_choose_the_texel(rig: MakeRig) -> None:
     pixels = np.zeros((2, 2, 4), np.uint8)
     pixels[..., 3] = 255
     pixels[1, 0] = (255, 255, 255, 255)  # u 0..0.5, v 0.5..1
@@ -147,7 +130,7 @@ def test_texture_transforms_choose_the_texel(rig: Make) -> None:
     np.testing.assert_array_equal(channels(rig(world, ABOVE))["c"][:3], 255)
 
 
-def test_culling_and_double_sided_normals(rig: Make) -> None:
+def test_culling_and_double_sided_normals(rig: MakeRig) -> None:
     below = camera(vector(0, -3, 0), vector(0, 0, 0))
     got = channels(rig(scene((mesh(quad()), IDENTITY)), below))
     assert got["scene_color"][3] == 0  # its back is culled
@@ -156,7 +139,7 @@ def test_culling_and_double_sided_normals(rig: Make) -> None:
     np.testing.assert_array_equal(decoded_normal(int(got["a"])), [0, -1, 0])
 
 
-def test_masked_texels_are_cut_out(rig: Make) -> None:
+def test_masked_texels_are_cut_out(rig: MakeRig) -> None:
     pixels = np.full((1, 2, 4), 255, np.uint8)
     pixels[0, 0, 3] = 0
     surface = material(alpha_mode="mask", base_color_texture=TextureSlot(0))
@@ -173,7 +156,7 @@ def test_masked_texels_are_cut_out(rig: Make) -> None:
     assert not covered[whole[..., 0] < -0.02].any()
 
 
-def test_instances_of_many_materials_land_where_they_belong(rig: Make) -> None:
+def test_instances_of_many_materials_land_where_they_belong(rig: MakeRig) -> None:
     """Batches, shared meshes and base instances: each box shows its own colour."""
     rng = np.random.default_rng(2)
     colors = rng.uniform(0.1, 1.0, (12, 4)).astype(np.float32)

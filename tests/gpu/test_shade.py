@@ -1,0 +1,158 @@
+"""Direct light in rendered frames against closed forms."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from elemental.scene.model import Camera, Environment, Light
+from gpu.rig import IDENTITY, MakeRig, at, camera, material, mesh, scene, sun, vector
+from shapes import quad, sphere
+
+Array = npt.NDArray[Any]
+ABOVE = camera(vector(0.1, 4, 0.2), vector(0, 0, 0), fov_y=0.5)
+
+
+def expected(
+    p: Array, n: Array, to_light: Array, irradiance: float | Array, view: Camera = ABOVE
+) -> Array:
+    """Radiance of a white dielectric of roughness 1 in float64: Lambert plus the slides' Gaussian
+    specular at the smallest power, with Schlick's Fresnel."""
+    albedo, f0, power = 1.0, 0.04, 0.5
+    eye = view.world_from_view[:3, 3].astype(np.float64)
+    v = eye - p
+    v /= np.linalg.norm(v, axis=-1, keepdims=True)
+    h = v + to_light
+    h /= np.linalg.norm(h, axis=-1, keepdims=True)
+    lambert = np.clip(np.sum(n * to_light, axis=-1), 0, 1)
+    angle = np.arccos(np.power(0.04, 1.0 / power))
+    norm_angle = (np.clip(np.sum(n * h, axis=-1), 0, 1) - 1) / (np.cos(angle) - 1)
+    fresnel = f0 + (1 - f0) * (1 - np.sum(v * h, axis=-1)) ** 5
+    specular = fresnel * np.exp(-(norm_angle**2)) * lambert / (angle**2 * 10)
+    return irradiance * (albedo / np.pi * lambert + specular)
+
+
+def test_a_lambertian_plane_under_the_sun(rig: MakeRig) -> None:
+    """radiance = albedo / pi * illuminance * cos, and the specular part."""
+    for tilt in (0.0, 0.6, 1.2):
+        direction = vector(np.sin(tilt), -np.cos(tilt), 0)
+        world = scene((mesh(quad(2.0)), IDENTITY), lights=[sun(direction, casts_shadow=False)])
+        view = rig(world, ABOVE)
+        radiance, points = view.scene_color()[..., 0], view.positions()
+        hit = np.isfinite(points[..., 0])
+        want = expected(points[hit], vector(0, 1, 0), -direction, np.pi)
+        assert hit.sum() > 2000
+        np.testing.assert_allclose(radiance[hit], want, rtol=6e-3)
+
+
+def test_a_lambertian_sphere_under_the_sun(rig: MakeRig) -> None:
+    direction = vector(0.3, -1, -0.4)
+    to_light = -direction / np.linalg.norm(direction)
+    ball = mesh(sphere(rings=64), smooth=True)
+    world = scene((ball, IDENTITY), lights=[sun(direction, casts_shadow=False)])
+    view = rig(world, ABOVE)
+    radiance, points = view.scene_color()[..., 0], view.positions()
+    hit = np.isfinite(points[..., 0])
+    p = points[hit]
+    n = p / np.linalg.norm(p, axis=1, keepdims=True)
+    want = expected(p, n, to_light, np.pi)
+    assert np.abs(radiance[hit] - want).max() < 0.02
+    assert np.abs(radiance[hit] - want).mean() < 0.003
+
+
+def test_a_point_light_obeys_the_inverse_square(rig: MakeRig) -> None:
+    position = vector(0.3, 0.7, -0.2)
+    lamp = Light(
+        "lamp", "point", vector(1, 1, 1), 2.0, position, vector(0, -1, 0), casts_shadow=False
+    )
+    view = rig(scene((mesh(quad(2.0)), IDENTITY), lights=[lamp]), ABOVE)
+    radiance, points = view.scene_color()[..., 0], view.positions()
+    hit = np.isfinite(points[..., 0])
+    offset = position - points[hit]
+    distance = np.linalg.norm(offset, axis=1)
+    to_light = offset / distance[:, None]
+    want = expected(points[hit], vector(0, 1, 0), to_light, 2.0 / distance**2)
+    np.testing.assert_allclose(radiance[hit], want, rtol=8e-3)
+
+
+def test_a_spot_lights_a_disc_between_its_angles(rig: MakeRig) -> None:
+    lamp = Light("lamp", "spot", vector(1, 1, 1), 5.0, vector(0, 2, 0), vector(0, -1, 0),
+                 inner_angle=0.15, outer_angle=0.3, casts_shadow=False)  # fmt: skip
+    view = rig(scene((mesh(quad(2.0)), IDENTITY), lights=[lamp]), ABOVE)
+    radiance, points = view.scene_color()[..., 0], view.positions()
+    angle = np.arctan2(np.linalg.norm(points[..., [0, 2]], axis=-1), 2.0)
+    lit_fully, dark = angle < 0.15, angle > 0.3
+    assert lit_fully.sum() > 50
+    assert radiance[lit_fully].min() > 0.3
+    assert radiance[dark].max() == 0.0
+    ring = (angle > 0.16) & (angle < 0.29)
+    falloff = (np.cos(angle[ring]) - np.cos(0.3)) / (np.cos(0.15) - np.cos(0.3))
+    reference = 5.0 / np.pi * np.cos(angle[ring]) ** 3 / 4.0 * falloff**2
+    assert np.all(radiance[ring] > 0.95 * reference)
+    assert np.all(radiance[ring] < 1.25 * reference)
+
+
+def test_a_highlight_widens_with_the_light(rig: MakeRig) -> None:
+    """SH-04 in a frame: the slide's widened lobe, not merely a brighter one."""
+    floor = material(base_color=vector(1, 1, 1, 1), metallic=1.0, roughness=0.3)
+    spans, sums = [], []
+    for radius in (0.0, 0.15):
+        lamp = Light("lamp", "point", vector(1, 1, 1), 1.0, vector(0.4, 3, 0), vector(0, -1, 0),
+                     source_radius=radius, casts_shadow=False)  # fmt: skip
+        view = rig(scene((mesh(quad(4.0)), IDENTITY), materials=[floor], lights=[lamp]), ABOVE)
+        radiance = view.scene_color()[..., 0]
+        spans.append(int((radiance > radiance.max() / 2).sum()))
+        sums.append(float(radiance.sum()))
+    assert spans[1] > 1.3 * spans[0]
+    assert abs(sums[1] / sums[0] - 1.0) < 0.1
+
+
+def test_emission_is_added_and_unlit_is_left_alone(rig: MakeRig) -> None:
+    light = sun(vector(0, -1, 0), casts_shadow=False)
+    glow, flat = vector(2, 1, 0.5), vector(0.5, 0.25, 0.125, 1)
+    materials = [
+        material(emissive=glow, base_color=vector(0, 0, 0, 1), metallic=1.0),
+        material(base_color=flat, unlit=True),
+    ]
+    world = scene(
+        (mesh(quad(0.8), 0), at(-0.5, 0, 0)),
+        (mesh(quad(0.8), 1), at(0.5, 0, 0)),
+        materials=materials,
+        lights=[light],
+    )
+    view = rig(world, ABOVE)
+    radiance, points = view.scene_color(), view.positions()
+    left, right = points[..., 0] < -0.2, points[..., 0] > 0.2
+    np.testing.assert_allclose(radiance[left][:, :3], np.tile(glow, (left.sum(), 1)), rtol=0.02)
+    np.testing.assert_allclose(
+        radiance[right][:, :3], np.tile(flat[:3], (right.sum(), 1)), rtol=1e-3
+    )
+
+
+def test_the_sky_is_behind_everything(rig: MakeRig) -> None:
+    sky = Environment(None, vector(0.5, 1, 2), 3.0)
+    view = rig(scene((mesh(quad(0.5)), IDENTITY), environment=sky), ABOVE)
+    radiance, points = view.scene_color(), view.positions()
+    behind = ~np.isfinite(points[..., 0])
+    np.testing.assert_array_equal(radiance[behind][:, 3], 0.0)
+    want = np.tile([1.5, 3.0, 6.0], (behind.sum(), 1))
+    np.testing.assert_allclose(radiance[behind][:, :3], want, rtol=1e-3)
+    assert radiance[~behind][:, :3].max() == 0.0
+
+
+def test_translucent_surfaces_blend_over_in_order(rig: MakeRig) -> None:
+    """Two unlit panes of opacity 1/2, given near first: far, then near, over the sky."""
+    panes = [
+        material(base_color=vector(1, 0, 0, 0.5), alpha_mode="blend", unlit=True),
+        material(base_color=vector(0, 1, 0, 0.5), alpha_mode="blend", unlit=True),
+    ]
+    world = scene(
+        (mesh(quad(2.0), 0), at(0, 1, 0)),
+        (mesh(quad(2.0), 1), IDENTITY),
+        materials=panes,
+        environment=Environment(None, vector(0, 0, 1), 1.0),
+    )
+    got = rig(world, ABOVE).scene_color()[32, 48, :3]
+    np.testing.assert_allclose(got, [0.5, 0.25, 0.25], rtol=1e-3)
