@@ -55,7 +55,7 @@ def emission_mask(scene: Scene, camera: Camera, job: Job, folder: Path) -> Float
     lights = {**_emitting_surfaces(scene, surfaces), "sky": {"type": "constant"}}
     quick = Job(job.size, 1, 0)
     image = _render({**surfaces, **lights}, camera, quick, max_depth=1)
-    return (image.max(axis=2) == 0.0).astype(np.float32)
+    return np.asarray(image.max(axis=2) == 0.0, dtype=np.float32)
 
 
 def _render(entries: Entry, camera: Camera, job: Job, max_depth: int) -> FloatArray:
