@@ -26,7 +26,8 @@ from elemental.gpu.refs import (
     SamplerKey,
     TextureHandle,
 )
-from elemental.gpu.resources import Buffer, Texture, TextureDesc
+from elemental.gpu.resources import Buffer, Texture
+from elemental.gpu.shape import TextureDesc
 
 Params = Mapping[str, npt.NDArray[np.void]]
 

@@ -23,8 +23,9 @@ from elemental.gpu.messages import GlError, Messages
 from elemental.gpu.params import ParamRing
 from elemental.gpu.program import Program
 from elemental.gpu.readback import ReadbackQueue
-from elemental.gpu.resources import Buffer, Texture, TextureDesc, VertexInput
+from elemental.gpu.resources import Buffer, Texture, VertexInput
 from elemental.gpu.shaders import Shader
+from elemental.gpu.shape import TextureDesc
 from elemental.gpu.timers import PassTimers, PassTiming
 from elemental.gpu.watch import ShaderWatcher
 
@@ -173,7 +174,7 @@ class Device:
         """Bind a texture to the unit that no pass uses, for allocation, upload or read-back."""
         self.gl.glActiveTexture(c.TEXTURE0 + self.scratch_unit)
         self.gl.glBindTexture(target, glo)
-        self.executor.texture_unit_changed()
+        self.executor.binder.texture_unit_changed()
 
     def bytes(self) -> dict[str, int]:
         """Bytes allocated now, by category."""

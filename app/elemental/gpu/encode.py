@@ -58,7 +58,7 @@ class Encoder:
             else:
                 physical.append(resource)
         self._executor.barrier([(resource, bindings[0][0].barrier, False) for resource in physical])
-        self._executor.bind(bindings, physical)
+        self._executor.binder.bind(bindings, physical)
 
     def set(self, **changes: Any) -> None:
         """Change fields of the pass's RasterState for the draws that follow."""

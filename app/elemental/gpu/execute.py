@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from elemental.gpu import gl as c
 from elemental.gpu import state as raster_state
-from elemental.gpu.binding import BlockLook, ImageLook, Look, SamplerLook
+from elemental.gpu.binder import Binder
 from elemental.gpu.encode import Encoder
 from elemental.gpu.passes import (
     ClearBuffer,
@@ -22,8 +22,9 @@ from elemental.gpu.passes import (
 )
 from elemental.gpu.plan import Hazards, schedule
 from elemental.gpu.pool import TargetPool
-from elemental.gpu.refs import BufferHandle, SamplerKey, TextureHandle, sampler_parameters
-from elemental.gpu.resources import Buffer, Texture, TextureDesc
+from elemental.gpu.refs import BufferHandle, TextureHandle
+from elemental.gpu.resources import Buffer, Texture
+from elemental.gpu.shape import TextureDesc
 from elemental.gpu.targets import Framebuffers
 
 if TYPE_CHECKING:
@@ -38,18 +39,13 @@ class Executor:
         self.device = device
         self.gl = device.gl
         self.hazards = Hazards()
+        self.binder = Binder(device.gl, device.max_anisotropy)
         self.framebuffers = Framebuffers(device.gl)
         self.pool: TargetPool[Texture | Buffer] = TargetPool(self._make)
-        self._samplers: dict[SamplerKey, int] = {}
         self._kept: list[tuple[Hashable, Texture | Buffer, TextureHandle | BufferHandle]] = []
         self._encoded: dict[str, bytes] = {}
         self._physical: list[Any] = []
-        self._units: dict[int, int] = {}
-        self._unit_samplers: dict[int, int] = {}
-        self._images: dict[int, tuple[int, ...]] = {}
-        self._blocks: dict[tuple[int, int], int] = {}
         self._state: raster_state.RasterState | None = None
-        self._active_unit = -1
         self._params = (0, 0)
         self._run = {
             ComputePass: self._compute,
@@ -75,15 +71,6 @@ class Executor:
             self.pool.give_back(description, physical)
         self._kept.clear()
 
-    def forget_bindings(self) -> None:
-        """Assume nothing about the context's state: other code may have changed it."""
-        self._units.clear()
-        self._unit_samplers.clear()
-        self._images.clear()
-        self._blocks.clear()
-        self._state = None
-        self._active_unit = -1
-
     def run(self, graph: Graph) -> None:
         """Plan and run one frame."""
         device, gl = self.device, self.gl
@@ -93,7 +80,8 @@ class Executor:
         physical: list[Any] = list(resources)
         self._physical = physical
         held: set[int] = set()
-        self.forget_bindings()
+        self.binder.forget()
+        self._state = None
         self._params = device.params.upload()
         gl.glDisable(c.SCISSOR_TEST)
         queries = device.timers.begin(len(plan.order))
@@ -158,74 +146,12 @@ class Executor:
         if bits:
             self.gl.glMemoryBarrier(bits)
 
-    # Bindings ----------------------------------------------------------------------------------
-
-    def bind(self, bindings: Sequence[tuple[Look, int]], physical: Sequence[Any]) -> None:
-        """Bind textures, images and blocks, skipping what is bound already."""
-        gl = self.gl
-        for look, resource in bindings:
-            if look.__class__ is SamplerLook:
-                self._bind_sampler(look, physical[resource])
-            elif look.__class__ is BlockLook:
-                glo = physical[resource].glo
-                place = (look.target, look.unit)
-                if self._blocks.get(place) != glo:
-                    self._blocks[place] = glo
-                    gl.glBindBufferBase(look.target, look.unit, glo)
-            elif look.__class__ is ImageLook:
-                self._bind_image(look, physical[resource])
-
-    def _bind_sampler(self, look: SamplerLook, texture: Texture) -> None:
-        gl = self.gl
-        unit = look.unit
-        glo = texture.glo if look.view is None else texture.view(*look.view)
-        if self._units.get(unit) != glo:
-            self._units[unit] = glo
-            if self._active_unit != unit:
-                self._active_unit = unit
-                gl.glActiveTexture(c.TEXTURE0 + unit)
-            gl.glBindTexture(look.target, glo)
-        sampler = self._samplers.get(look.sampler) or self._make_sampler(look.sampler)
-        if self._unit_samplers.get(unit) != sampler:
-            self._unit_samplers[unit] = sampler
-            gl.glBindSampler(unit, sampler)
-
-    def _bind_image(self, look: ImageLook, texture: Texture) -> None:
-        glo = texture.glo if look.view is None else texture.view(*look.view)
-        wanted = (glo, look.level, look.layered, look.layer, look.access, look.format)
-        if self._images.get(look.unit) != wanted:
-            self._images[look.unit] = wanted
-            self.gl.glBindImageTexture(look.unit, *wanted)
-
-    def texture_unit_changed(self) -> None:
-        """The active texture unit was changed by an upload or an allocation."""
-        self._active_unit = -1
-
-    def _make_sampler(self, key: SamplerKey) -> int:
-        gl = self.gl
-        (minify, magnify), (wrap_u, wrap_v) = sampler_parameters(key)
-        _, _, compare, border, anisotropy = key
-        glo = self._samplers[key] = gl.generate("Samplers")
-        gl.glSamplerParameteri(glo, c.TEXTURE_MIN_FILTER, minify)
-        gl.glSamplerParameteri(glo, c.TEXTURE_MAG_FILTER, magnify)
-        gl.glSamplerParameteri(glo, c.TEXTURE_WRAP_S, wrap_u)
-        gl.glSamplerParameteri(glo, c.TEXTURE_WRAP_T, wrap_v)
-        gl.glSamplerParameteri(glo, c.TEXTURE_WRAP_R, wrap_v)
-        gl.glSamplerParameterfv(glo, c.TEXTURE_BORDER_COLOR, (ctypes.c_float * 4)(*[border] * 4))
-        if compare:
-            gl.glSamplerParameteri(glo, c.TEXTURE_COMPARE_MODE, c.COMPARE_REF_TO_TEXTURE)
-            gl.glSamplerParameteri(glo, c.TEXTURE_COMPARE_FUNC, c.LEQUAL)
-        limit = min(anisotropy, self.device.max_anisotropy)
-        if limit > 1:
-            gl.glSamplerParameterf(glo, c.TEXTURE_MAX_ANISOTROPY, limit)
-        return glo
-
     def _bind_pass(self, node: Pass) -> None:
-        self.bind(node.bindings, self._physical)
+        binder = self.binder
+        binder.bind(node.bindings, self._physical)
         glo, base = self._params
         for unit, offset, size in node.params:
-            self._blocks.pop((c.UNIFORM_BUFFER, unit), None)
-            self.gl.glBindBufferRange(c.UNIFORM_BUFFER, unit, glo, base + offset, size)
+            binder.bind_params(unit, glo, base + offset, size)
 
     # Kinds of passes ---------------------------------------------------------------------------
 
@@ -350,9 +276,7 @@ class Executor:
         self.return_kept()
         self.pool.clear()
         self.framebuffers.release()
-        for sampler in self._samplers.values():
-            self.gl.delete("Samplers", sampler)
-        self._samplers.clear()
+        self.binder.release()
 
 
 def _description(handle: Any) -> Hashable:

@@ -9,9 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from elemental.gpu import gl as c
+from elemental.gpu.arguments import Color, clear_list, group_counts, target_parts, triple
 from elemental.gpu.binding import (
     GraphError,
     Params,
@@ -36,22 +35,19 @@ from elemental.gpu.refs import (
     AnyTexture,
     BufferHandle,
     ImageRef,
-    Layer,
-    Mip,
     Ref,
     TextureHandle,
 )
-from elemental.gpu.resources import Buffer, Texture, TextureDesc, level_size
+from elemental.gpu.resources import Buffer, Texture
 from elemental.gpu.shaders import Compute, Raster
+from elemental.gpu.shape import TextureDesc, level_size
 from elemental.gpu.state import DEFAULT, RasterState
 
 if TYPE_CHECKING:
     from elemental.gpu.device import Device
     from elemental.gpu.encode import Encoder
 
-Color = tuple[float, float, float, float]
 AnyResource = Texture | TextureHandle | Buffer | BufferHandle
-_MAX_GROUPS = c.MAX_WORK_GROUPS
 
 
 class Graph:
@@ -145,9 +141,9 @@ class Graph:
             node.reads.append(index)
             node.accesses.append((index, c.COMMAND_BARRIER, False))
         elif threads is not None:
-            node.groups = _groups(_triple(threads), program.local_size, program, node.name)
+            node.groups = group_counts(triple(threads), program.local_size, program, node.name)
         elif groups is not None:
-            node.groups = _groups(_triple(groups), (1, 1, 1), program, node.name)
+            node.groups = group_counts(triple(groups), (1, 1, 1), program, node.name)
         self.passes.append(node)
 
     def raster(
@@ -183,7 +179,7 @@ class Graph:
         if draw is None:
             require_all(program, node.missing)
         node.draw, node.vertices, node.instances = draw, vertices, instances
-        clears = _clear_list(clear_color, len(targets), node.name)
+        clears = clear_list(clear_color, len(targets), node.name)
         extent = size
         for target, clear in zip(targets, clears, strict=True):
             attachment = self._attach(node, target, clear is not None, True)
@@ -307,7 +303,7 @@ class Graph:
         self, node: RasterPass, target: ImageRef, cleared: bool, written: bool
     ) -> tuple[int, int, int]:
         """(resource, level, layer or -1) of a render target; notes how it is used."""
-        texture, level, layer = _target(target)
+        texture, level, layer = target_parts(target)
         index = self._index(texture)
         desc = texture.desc
         whole = desc.mips == 1 and (layer < 0 or desc.slices == 1)
@@ -323,56 +319,10 @@ class Graph:
     def _extent(
         self, node: RasterPass, target: ImageRef, extent: tuple[int, int] | None
     ) -> tuple[int, int]:
-        texture, level, _ = _target(target)
+        texture, level, _ = target_parts(target)
         width, height = level_size(texture.desc.size, level)[:2]
         if extent is not None and extent != (width, height):
             raise GraphError(
                 f"{node.name}: target {texture.name} is {width}x{height}, not {extent}"
             )
         return width, height
-
-
-def _target(target: ImageRef) -> tuple[AnyTexture, int, int]:
-    if isinstance(target, Mip):
-        texture, level, layer = target.texture, target.level, -1
-    elif isinstance(target, Layer):
-        texture, level, layer = target.texture, target.level, target.layer
-    else:
-        return target, 0, -1
-    if not 0 <= level < texture.desc.mips or not -1 <= layer < texture.desc.slices:
-        raise GraphError(f"{texture.name} has no level {level}, layer {layer}")
-    return texture, level, layer
-
-
-def _clear_list(
-    clear: Color | Sequence[Color | None] | None, count: int, name: str
-) -> Sequence[Color | None]:
-    if clear is None:
-        return [None] * count
-    if isinstance(clear, (list, tuple)) and all(np.isscalar(value) for value in clear):
-        return [clear] * count  # type: ignore[list-item]
-    if len(clear) != count:
-        raise GraphError(f"{name}: {len(clear)} clear colours for {count} targets")
-    return clear  # type: ignore[return-value]
-
-
-def _triple(extent: int | Sequence[int]) -> tuple[int, int, int]:
-    if isinstance(extent, (int, np.integer)):
-        return int(extent), 1, 1
-    x, y, z = (*extent, 1, 1)[:3]
-    return int(x), int(y), int(z)
-
-
-def _groups(
-    extent: tuple[int, int, int], local: tuple[int, int, int], program: Program, name: str
-) -> tuple[int, int, int]:
-    x, y, z = (-(-n // size) for n, size in zip(extent, local, strict=True))
-    if x <= _MAX_GROUPS and y <= _MAX_GROUPS and z <= _MAX_GROUPS:
-        return x, y, z
-    if y == z == 1 and program.linear_dispatch:
-        rows = -(-x // _MAX_GROUPS)
-        return -(-x // rows), rows, 1
-    raise GraphError(
-        f"{name}: {(x, y, z)} groups exceed {_MAX_GROUPS} along one axis; a one-dimensional "
-        "dispatch may, if the shader uses linear_thread_id() of lib/dispatch.glsl"
-    )

@@ -7,13 +7,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from elemental.gpu import gl as c
-from elemental.gpu.resources import Buffer, Texture, TextureDesc, _Shaped
+from elemental.gpu.resources import Buffer, Texture
+from elemental.gpu.shape import Shaped, TextureDesc
 
 if TYPE_CHECKING:
     from elemental.gpu.graph import Graph
 
 
-class TextureHandle(_Shaped):
+class TextureHandle(Shaped):
     """A transient texture of one frame; ``physical`` is set while the graph runs.
 
     A kept handle's ``physical`` stays valid until the device's next ``begin_frame``.

@@ -1,0 +1,109 @@
+"""What a texture is made of: size, format, levels, layers; no GL calls."""
+
+from __future__ import annotations
+
+import math
+from typing import ClassVar
+
+from elemental.gpu import gl as c
+from elemental.gpu.formats import Format
+
+_FACES = 6
+
+
+class TextureDesc:
+    """What a texture is made of. Equal descriptions are one object and share pooled targets."""
+
+    __slots__ = ("cube", "format", "layers", "mips", "nbytes", "size", "slices", "target")
+    size: tuple[int, ...]
+    """(width, height) or (width, height, depth) texels."""
+    format: Format
+    mips: int
+    layers: int | None
+    """Layers of an array (of cubes, where ``cube``); None: no array."""
+    cube: bool
+    target: int
+    """GL texture target."""
+    slices: int
+    """Two-dimensional images at level 0: depth, layers or faces."""
+    nbytes: int
+    """Bytes of all levels, without the driver's padding."""
+
+    _known: ClassVar[dict[tuple[object, ...], TextureDesc]] = {}
+
+    def __new__(
+        cls,
+        size: tuple[int, ...],
+        format: Format,
+        mips: int = 1,
+        layers: int | None = None,
+        cube: bool = False,
+    ) -> TextureDesc:
+        """The one description of these values."""
+        key = (size, format, mips, layers, cube)
+        known = cls._known.get(key)
+        if known is None:
+            known = cls._known[key] = super().__new__(cls)
+            known.size, known.format, known.mips = size, format, mips
+            known.layers, known.cube = layers, cube
+            known.target = _target(size, layers, cube)
+            known.slices = size[2] if len(size) == 3 else (layers or 1) * (_FACES if cube else 1)
+            extents = [level_size(size, level) for level in range(mips)]
+            texels = sum(math.prod(extent) for extent in extents)
+            flat = 1 if len(size) == 3 else known.slices
+            known.nbytes = texels * flat * format.texel_bytes
+        return known
+
+    def __repr__(self) -> str:
+        return f"TextureDesc({self.size}, {self.format}, {self.mips}, {self.layers}, {self.cube})"
+
+
+def _target(size: tuple[int, ...], layers: int | None, cube: bool) -> int:
+    if cube:
+        return c.TEXTURE_CUBE_MAP if layers is None else c.TEXTURE_CUBE_MAP_ARRAY
+    if len(size) == 3:
+        return c.TEXTURE_3D
+    return c.TEXTURE_2D if layers is None else c.TEXTURE_2D_ARRAY
+
+
+def level_size(size: tuple[int, ...], level: int) -> tuple[int, ...]:
+    """Texels along each axis at mip ``level``."""
+    return tuple(max(1, extent >> level) for extent in size)
+
+
+class Shaped:
+    """Read access to a description, shared by physical textures and graph handles."""
+
+    __slots__ = ("desc", "name")
+    desc: TextureDesc
+    name: str
+
+    @property
+    def size(self) -> tuple[int, ...]:
+        """(width, height) or (width, height, depth) at level 0."""
+        return self.desc.size
+
+    @property
+    def width(self) -> int:
+        """Texels along x at level 0."""
+        return self.desc.size[0]
+
+    @property
+    def height(self) -> int:
+        """Texels along y at level 0."""
+        return self.desc.size[1]
+
+    @property
+    def format(self) -> Format:
+        """Texel format."""
+        return self.desc.format
+
+    @property
+    def mips(self) -> int:
+        """Mip levels."""
+        return self.desc.mips
+
+    @property
+    def layers(self) -> int | None:
+        """Array layers, None where it is no array."""
+        return self.desc.layers
