@@ -71,7 +71,7 @@ class App:
         self.shows_hud, self.shows_help = True, False
         self.frame: Frame | None = None
         self.problems: list[str] = []
-        self._frame_s = self._cpu_ms = 0.0
+        self._wall_s = self._frame_s = self._cpu_ms = 0.0
         self._message, self._message_until = "", 0.0
 
     def loop(self) -> None:
@@ -82,8 +82,8 @@ class App:
             hidden = 0 in size
             events = self.window.poll(HIDDEN_WAIT_S if hidden else 0.0)
             now = time.perf_counter()
-            self._frame_s = self.clock.advance(now - before)
-            before = now
+            self._wall_s, before = now - before, now
+            self._frame_s = self.clock.advance(self._wall_s)
             self.handle(events)
             if not hidden:
                 self.draw(size)
@@ -101,7 +101,7 @@ class App:
         present(self.device, self.frame, size)
         self._cpu_ms = 1e3 * (time.perf_counter() - began)
         timings = [(timing.name, timing.gpu_ms) for timing in self.device.timings]
-        self.averages.update([("frame", 1e3 * self._frame_s), *timings], self._frame_s)
+        self.averages.update([("frame", 1e3 * self._wall_s), *timings], self._wall_s)
         with self.gui.frame():
             self._panels(size)
         self.window.swap()

@@ -71,9 +71,9 @@ def draw_hud(figures: Figures) -> None:
             _colored(RED, f"{name.replace('_', ' ').upper()}: {count:,}")
     rows = [(name, f"{ms:.3f} ms") for name, ms in figures.passes.items()]
     rows.append(("all passes", f"{sum(figures.passes.values()):.3f} ms"))
-    _two_columns("passes", rows)
-    _two_columns("counters", [(n.replace("_", " "), f"{c:,}") for n, c in figures.counters.items()])
-    _two_columns("bytes", [(n, f"{b / 2**20:.1f} MiB") for n, b in figures.bytes.items()])
+    _figures("passes", rows)
+    _figures("counters", [(n.replace("_", " "), f"{c:,}") for n, c in figures.counters.items()])
+    _figures("bytes", [(n, f"{b / 2**20:.1f} MiB") for n, b in figures.bytes.items()])
     _colored(GREY, "F1 keys, F6 hides this")
     imgui.end()
 
@@ -105,6 +105,12 @@ def _colored(color: imgui.ImVec4, text: str) -> None:
     imgui.push_style_color(imgui.Col_.text.value, color)
     imgui.text_unformatted(text)
     imgui.pop_style_color()
+
+
+def _figures(name: str, rows: Sequence[tuple[str, str]]) -> None:
+    """Two columns, the right one of figures that end below each other (the font is monospaced)."""
+    width = max((len(figure) for _, figure in rows), default=0)
+    _two_columns(name, [(left, figure.rjust(width)) for left, figure in rows])
 
 
 def _two_columns(name: str, rows: Sequence[tuple[str, str]]) -> None:
