@@ -8,6 +8,20 @@ layout(local_size_x = 256) in;
 
 layout(rgba32f) uniform image2D u_level;
 
+const uint TENT_SAMPLES = 4u;  // a side of a texel's tent, which is two texels wide
+
+// Solid angle that bilinear filtering gives to a texel: the sphere's area under its tent.
+float texel_weight(vec2 center, float texel) {
+    float sum = 0.0;
+    for (uint i = 0u; i < TENT_SAMPLES * TENT_SAMPLES; ++i) {
+        vec2 cell = vec2(i % TENT_SAMPLES, i / TENT_SAMPLES);
+        vec2 offset = (cell + 0.5) / float(TENT_SAMPLES) * 2.0 - 1.0;
+        vec2 tent = 1.0 - abs(offset);
+        sum += tent.x * tent.y * octahedral_weight(octahedral_fold(center + offset * texel));
+    }
+    return sum;
+}
+
 shared vec4 sums[256];  // weighted radiance, weight
 
 void main() {
@@ -16,7 +30,8 @@ void main() {
     vec4 sum = vec4(0.0);
     for (uint i = thread; i < content * content; i += 256u) {
         uvec2 texel = uvec2(i % content, i / content);
-        float weight = octahedral_weight((vec2(texel) + 0.5) / float(content) * 2.0 - 1.0);
+        vec2 center = (vec2(texel) + 0.5) / float(content) * 2.0 - 1.0;
+        float weight = texel_weight(center, 2.0 / float(content));
         sum += vec4(imageLoad(u_level, ivec2(texel) + 1).rgb, 1.0) * weight;
     }
     sums[thread] = sum;
