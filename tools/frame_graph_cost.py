@@ -24,6 +24,7 @@ import numpy as np
 from elemental.gpu.device import Device
 from elemental.gpu.formats import RGBA16F
 from elemental.gpu.graph import Graph
+from elemental.gpu.refs import Ref
 from elemental.gpu.shaders import Compute, Raster
 
 BINDINGS = """
@@ -66,7 +67,7 @@ class Workload:
         for index in range(self.passes):
             target = graph.texture(f"target {index}", like=images[-1])
             a, b, c = images[-3:]
-            reads = {"u_a": a, "u_b": b, "u_c": c, "Values": self.values}
+            reads: dict[str, Ref] = {"u_a": a, "u_b": b, "u_c": c, "Values": self.values}
             if index % 2:
                 graph.compute(
                     self.compute, reads=reads, writes={"o_image": target}, params=self.params,
@@ -103,10 +104,11 @@ def without_driver(device: Device, workload: Workload) -> Iterator[None]:
     def available(_query: int, _parameter: int, answer: Any) -> None:
         answer._obj.value = 1
 
-    class Nothing:
+    class _Nothing:
         def __getattr__(self, _: str) -> Callable[..., int]:
             return nothing
 
+    stub: Any = _Nothing()
     gl = device.gl
     real = {name: value for name, value in vars(gl).items() if name.startswith("gl")}
     programs = [device.program(workload.compute), device.program(workload.raster)]
@@ -114,8 +116,8 @@ def without_driver(device: Device, workload: Workload) -> Iterator[None]:
     for name in real:
         setattr(gl, name, available if name == "glGetQueryObjectiv" else nothing)
     for program, _, _ in kept:
-        program.mgl = Nothing()
-        program.vertex_arrays.update(dict.fromkeys(program.vertex_arrays, Nothing()))
+        program.mgl = stub
+        program.vertex_arrays.update(dict.fromkeys(program.vertex_arrays, stub))
     yield
     for program, mgl, vertex_arrays in kept:
         program.mgl, program.vertex_arrays = mgl, vertex_arrays

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from elemental.gpu import gl as c
-from elemental.gpu import library
+from elemental.gpu import library, screen
 from elemental.gpu.device import FRAMES_IN_FLIGHT, Device, GpuMemoryError
 from elemental.gpu.formats import R8, RGBA8, RGBA32F
 from elemental.gpu.graph import Graph
@@ -370,3 +370,23 @@ def test_many_frames_do_not_grow(device: Device, sources: Sources) -> None:
         if frame == 20:
             before = (device.bytes(), len(device.executor.framebuffers))
     assert (device.bytes(), len(device.executor.framebuffers)) == before
+
+
+@pytest.mark.parametrize("through", [False, True])
+def test_present_fills_the_window_and_leaves_its_framebuffer_bound(
+    device: Device, sources: Sources, monkeypatch: pytest.MonkeyPatch, through: bool
+) -> None:
+    """A framebuffer stands in for the window's."""
+    image = device.texture("image", (2, 2), RGBA8, data=np.full((2, 2, 4), 100, np.uint8))
+    window = device.texture("window", (6, 4), RGBA8, data=np.zeros((4, 6, 4), np.uint8))
+    stand_in = device.executor.framebuffers.get([(window, 0, -1)], None, (0, 0))
+    monkeypatch.setattr(screen, "_WINDOW", stand_in)
+    half = sources.full_screen(
+        "o_color = 0.5 * texture(u_image, v_uv);", "uniform sampler2D u_image; out vec4 o_color;"
+    )
+    device.gl.glEnable(c.SCISSOR_TEST)
+    device.present(image, (6, 4), (half, "u_image") if through else None)
+    assert (window.read() == (50 if through else 100)).all()
+    assert device.gl.integer(0x8CA6) == stand_in  # GL_DRAW_FRAMEBUFFER_BINDING
+    image.release()
+    window.release()

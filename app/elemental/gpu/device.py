@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from elemental.core.paths import glsl_root
 from elemental.gpu import gl as c
+from elemental.gpu import screen
 from elemental.gpu.execute import Executor
 from elemental.gpu.formats import Format
 from elemental.gpu.graph import Graph
@@ -24,7 +25,7 @@ from elemental.gpu.params import ParamRing
 from elemental.gpu.program import Program
 from elemental.gpu.readback import ReadbackQueue
 from elemental.gpu.resources import Buffer, Texture, VertexInput
-from elemental.gpu.shaders import Shader
+from elemental.gpu.shaders import Raster, Shader
 from elemental.gpu.shape import TextureDesc
 from elemental.gpu.timers import PassTimers, PassTiming
 from elemental.gpu.watch import ShaderWatcher
@@ -268,17 +269,21 @@ class Device:
         """Frames handed to the driver that ``begin_frame`` has not yet seen finished."""
         return len(self._fences)
 
-    def present(self, texture: Texture, size: tuple[int, int]) -> None:
-        """Copy ``texture`` onto the window's framebuffer of ``size`` pixels."""
-        gl = self.gl
-        source = self.executor.framebuffers.get([(texture, 0, -1)], None, (0, 0))
-        gl.glMemoryBarrier(c.FRAMEBUFFER_BARRIER)
-        gl.glBindFramebuffer(c.READ_FRAMEBUFFER, source)
-        gl.glBindFramebuffer(c.DRAW_FRAMEBUFFER, 0)
-        fits = texture.size[:2] == size
-        extent = (0, 0, *texture.size[:2], 0, 0, *size)
-        gl.glBlitFramebuffer(*extent, c.COLOR_BUFFER_BIT, c.NEAREST if fits else c.LINEAR)
-        gl.glBindFramebuffer(c.FRAMEBUFFER, 0)
+    def present(
+        self,
+        texture: Texture,
+        size: tuple[int, int],
+        through: tuple[Raster, str] | None = None,
+    ) -> None:
+        """Put ``texture`` on the window's framebuffer of ``size`` pixels and leave that bound.
+
+        ``through``: a full-screen program and the name by which it samples the texture; without
+        it the texels are copied.
+        """
+        if through is None:
+            screen.copy(self, texture, size)
+        else:
+            screen.draw(self, *through, texture, size)
 
     def release(self) -> None:
         """Free everything the device made for itself, then the context."""
