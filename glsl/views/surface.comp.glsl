@@ -1,6 +1,6 @@
 // One channel of the G-buffer, by meaning, as display codes.
 #ifndef CHANNEL
-#define CHANNEL 0
+#define CHANNEL CHANNEL_NORMAL
 #endif
 
 layout(local_size_x = 8, local_size_y = 8) in;

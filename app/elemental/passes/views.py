@@ -20,8 +20,7 @@ CHANNELS = {
     "lighting_model": "lighting model: black unlit, violet default, orange subsurface",
     "subsurface": "subsurface colour",
 }
-"""Views of one G-buffer channel -> help; display codes. In the order of CHANNEL_* in
-glsl/views/surface.comp.glsl."""
+"""Views of one G-buffer channel -> help; display codes."""
 
 LIGHT_VIEWS = {
     "shadow": "share of the lights' irradiance that arrives",
@@ -30,8 +29,8 @@ LIGHT_VIEWS = {
 """Views of the lights -> help; linear."""
 
 SURFACE = {
-    name: Compute("views/surface.comp.glsl", defines={"CHANNEL": number})
-    for number, name in enumerate(CHANNELS)
+    name: Compute("views/surface.comp.glsl", defines={"CHANNEL": f"CHANNEL_{name.upper()}"})
+    for name in CHANNELS
 }
 LIGHTS = {
     name: Compute("views/lights.comp.glsl", defines={"SHOW_RADIANCE": int(name == "direct")})
