@@ -23,11 +23,19 @@ def device() -> Iterator[Device]:
 
 @pytest.fixture(autouse=True)
 def no_driver_messages() -> Iterator[None]:
-    """Fail the test on GL errors and on messages of high or medium severity."""
+    """Fail the test on GL errors and on messages of high or medium severity.
+
+    Advice about speed counts on software drivers only: elsewhere it depends on the machine.
+    """
     for made in _devices:
         made.log.messages.clear()
     yield
     for made in _devices:
         made.check()
-        warnings = [str(m) for m in made.log.messages if m.severity in ("high", "medium")]
+        warnings = [
+            str(message)
+            for message in made.log.messages
+            if message.severity in ("high", "medium")
+            and (made.info.software or not message.is_performance)
+        ]
         assert not warnings, warnings

@@ -179,6 +179,38 @@ def test_targets_of_different_sizes_are_refused(device: Device, sources: Sources
         graph.raster(sources.full_screen("o_color = vec4(1);"), color=color, depth=depth)
 
 
+def test_reading_what_is_rendered_to_is_refused(device: Device, sources: Sources) -> None:
+    shader = sources.full_screen(
+        "o_color = texture(u_image, v_uv);", "uniform sampler2D u_image; out vec4 o_color;"
+    )
+    graph = device.begin_frame()
+    image = graph.texture("image", (8, 8), RGBA16F, mips=2)
+    graph.clear_texture(image)
+    cube = graph.texture("cube", (8, 8), RGBA16F, cube=True)
+    graph.clear_texture(cube)
+    for target, read in (
+        (image, image),
+        (Mip(image, 1), image),
+        (Mip(image, 1), Mip(image, 1)),
+        (Layer(cube, 2), Layer(cube, 2)),
+    ):
+        with pytest.raises(GraphError, match="is rendered to and read in one pass"):
+            graph.raster(shader, color=target, reads={"u_image": read})
+    graph.raster(shader, color=Mip(image, 1), reads={"u_image": Mip(image, 0)})
+    graph.raster(shader, color=Layer(cube, 2), reads={"u_image": Layer(cube, 3)})
+    depth = graph.texture("depth", (8, 8), D32F)
+    graph.clear_texture(depth, (1,))
+    color = graph.texture("color", (8, 8), RGBA16F)
+    writing = RasterState(depth_test="less")
+    with pytest.raises(GraphError, match="depth is rendered to and read"):
+        graph.raster(shader, color=color, depth=depth, state=writing, reads={"u_image": depth})
+    testing = RasterState(depth_test="less", depth_write=False)
+    graph.raster(shader, color=color, depth=depth, state=testing, reads={"u_image": depth})
+    for handle in (image, cube, color):
+        graph.keep(handle)
+    graph.execute()
+
+
 @pytest.mark.parametrize("fmt", [D16, D24S8, D32F])
 def test_depth_is_tested_written_and_sampled(device: Device, sources: Sources, fmt: Any) -> None:
     """The left half at depth 0.25, then everything at 0.5: the right half is drawn."""

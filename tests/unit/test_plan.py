@@ -109,6 +109,12 @@ def test_reading_what_nobody_writes_is_an_error() -> None:
         plan([P("a", r="x", m="x")], kept="x")
 
 
+def test_keeping_what_nobody_writes_is_an_error() -> None:
+    with pytest.raises(PlanError, match="x is kept, but no pass writes it"):
+        plan([P("a", m="y")], kept="x")
+    assert plan([P("a", m="y")], kept="xy", persistent="x")[1] == "a"
+
+
 def test_lifetimes_span_first_to_last_use_among_live_passes() -> None:
     passes = [P("a", m="x"), P("dead", r="x", m="d"), P("b", r="x", m="y"), P("c", r="y", m="z"),
               P("late", r="x", m="w")]  # fmt: skip
@@ -203,6 +209,16 @@ def test_rendering_then_sampling_needs_nothing() -> None:
     hazards, x = Hazards(), Resource()
     hazards.barrier_before([(x, c.FRAMEBUFFER_BARRIER, False)])
     assert hazards.barrier_before([(x, FETCH, False)]) == 0
+
+
+def test_a_shader_write_waits_for_an_upload() -> None:
+    hazards, x = Hazards(), Resource()
+    hazards.barrier_before([(x, IMAGE, True)])
+    assert hazards.barrier_before([(x, IMAGE, True)]) == IMAGE
+    hazards.touched(x)
+    assert hazards.barrier_before([(x, STORAGE, True)]) == STORAGE
+    hazards.touched(x)
+    assert hazards.barrier_before([(x, STORAGE, True)]) == STORAGE
 
 
 def test_one_barrier_serves_all_resources_written_before_it() -> None:

@@ -6,11 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from elemental.gpu.binding import GraphError
+from elemental.gpu.binding import BlockLook, GraphError, SamplerLook
 from elemental.gpu.gl import MAX_WORK_GROUPS
+from elemental.gpu.passes import Attachment, RasterPass
 from elemental.gpu.program import Program
 from elemental.gpu.refs import AnyTexture, ImageRef, Layer, Mip
 
+_ALL_LEVELS = 32
 Color = tuple[float, float, float, float]
 
 
@@ -65,3 +67,22 @@ def group_counts(
         f"{name}: {(x, y, z)} groups exceed {MAX_WORK_GROUPS} along one axis; a one-dimensional "
         "dispatch may, if the shader uses linear_thread_id() of lib/dispatch.glsl"
     )
+
+
+def refuse_feedback(node: RasterPass, attached: Attachment, target: ImageRef) -> None:
+    """Raise GraphError where a pass reads the very level and layer that it renders to.
+
+    GL leaves the result undefined [GL 4.3, 9.3]; software drivers hide it.
+    """
+    index, target_level, target_layer = attached
+    for look, resource in node.bindings:
+        if resource != index or isinstance(look, BlockLook):
+            continue
+        if isinstance(look, SamplerLook):
+            _, level, levels, layer, _ = look.view or (0, 0, _ALL_LEVELS, -1, False)
+        else:
+            level, levels, layer = look.level, 1, -1 if look.layered else look.layer
+        same_level = level <= target_level < level + levels
+        if same_level and (layer == target_layer or -1 in (layer, target_layer)):
+            name = target_parts(target)[0].name
+            raise GraphError(f"{node.name}: {name} is rendered to and read in one pass")

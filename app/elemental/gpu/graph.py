@@ -10,7 +10,14 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from elemental.gpu import gl as c
-from elemental.gpu.arguments import Color, clear_list, group_counts, target_parts, triple
+from elemental.gpu.arguments import (
+    Color,
+    clear_list,
+    group_counts,
+    refuse_feedback,
+    target_parts,
+    triple,
+)
 from elemental.gpu.binding import (
     GraphError,
     Params,
@@ -191,6 +198,10 @@ class Graph:
             node.depth = self._attach(node, depth, clear_depth is not None, writes_depth)
             node.clear_depth, node.clear_stencil = clear_depth, clear_stencil
             extent = self._extent(node, depth, extent)
+            if writes_depth:
+                refuse_feedback(node, node.depth, depth)
+        for item, target in zip(node.color, targets, strict=True):
+            refuse_feedback(node, item[:3], target)
         if extent is None:
             raise GraphError(f"{node.name}: a pass without targets needs size=")
         node.size = extent

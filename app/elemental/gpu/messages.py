@@ -24,7 +24,10 @@ class Message(NamedTuple):
     """One debug message."""
 
     severity: str
+    """high, medium or low."""
     is_error: bool
+    is_performance: bool
+    """Advice about speed."""
     text: str
 
     def __str__(self) -> str:
@@ -53,7 +56,12 @@ class Messages:
         if severity not in _SEVERITIES or compiler_error:  # those are raised as ShaderError
             return
         words = ctypes.string_at(text, length if length >= 0 else -1).decode("utf-8", "replace")
-        message = Message(_SEVERITIES[severity], kind == c.DEBUG_TYPE_ERROR, words.strip())
+        message = Message(
+            _SEVERITIES[severity],
+            kind == c.DEBUG_TYPE_ERROR,
+            kind == c.DEBUG_TYPE_PERFORMANCE,
+            words.strip(),
+        )
         self.messages.append(message)
         if message.is_error or severity == c.DEBUG_SEVERITY_HIGH:
             self._unchecked.append(message)

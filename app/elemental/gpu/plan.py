@@ -64,10 +64,13 @@ def schedule(
     ``resources`` are names by index; ``persistent`` ones outlive the frame, so their writers always
     run; ``kept`` ones are the frame's outputs. A transient that is read before any pass wrote it,
     in declaration order, is read in its final version, so its writers run first.
-    Raises PlanError for a cycle or for a transient that is read and never written.
+    Raises PlanError for a cycle or for a transient that is read or kept and never written.
     """
     needs, late = _needs(passes, resources, persistent)
-    live = _live(passes, needs, persistent, kept)
+    live, unwritten = _live(passes, needs, persistent, kept)
+    for resource in sorted(unwritten):
+        if resource not in persistent:
+            raise PlanError(f"{resources[resource]} is kept, but no pass writes it")
     order = [index for index, alive in enumerate(live) if alive]
     if late:
         order = _sorted(passes, order, needs, _follows(passes, persistent))
@@ -131,7 +134,8 @@ def _live(
     needs: list[set[int]],
     persistent: Collection[int],
     kept: Collection[int],
-) -> list[bool]:
+) -> tuple[list[bool], set[int]]:
+    """(whether each pass runs, kept resources that none writes)."""
     live = [False] * len(passes)
     stack: list[int] = []
     unclaimed = set(kept)
@@ -152,7 +156,7 @@ def _live(
         if not live[index]:
             live[index] = True
             stack.extend(needs[index])
-    return live
+    return live, unclaimed
 
 
 def _sorted(
@@ -256,6 +260,11 @@ class Hazards:
             if shader_write:
                 state.written_at = now
         return bits
+
+    def touched(self, state: Tracked) -> None:
+        """Note an access outside of passes: an upload."""
+        self.clock += 1
+        state.access_at = self.clock
 
     def issued(self, bits: int) -> None:
         """Note that a barrier of ``bits`` was issued now."""

@@ -99,6 +99,7 @@ class Texture(Shaped):
         if len(raw) != expected:
             raise ValueError(f"texture {self.name}: {len(raw)} bytes given, {expected} needed")
         self.device.bind_for_update(self.target, self.glo)
+        self.device.executor.hazards.touched(self)
         gl.glPixelStorei(c.UNPACK_ALIGNMENT, 1)
         gl.glMemoryBarrier(c.TEXTURE_UPDATE_BARRIER)
         kind = (fmt.transfer, fmt.transfer_type)
@@ -118,6 +119,7 @@ class Texture(Shaped):
     def generate_mips(self) -> None:
         """Fill levels 1 and up by the driver's box filter."""
         self.device.bind_for_update(self.target, self.glo)
+        self.device.executor.hazards.touched(self)
         self.device.gl.glMemoryBarrier(c.TEXTURE_UPDATE_BARRIER | c.TEXTURE_FETCH_BARRIER)
         self.device.gl.glGenerateMipmap(self.target)
 
@@ -189,6 +191,7 @@ class Buffer:
     def write(self, values: npt.NDArray[Any] | bytes, offset: int = 0) -> None:
         """Overwrite bytes from ``offset``."""
         raw = values if isinstance(values, bytes) else np.ascontiguousarray(values).tobytes()
+        self.device.executor.hazards.touched(self)
         self.device.gl.glMemoryBarrier(c.BUFFER_UPDATE_BARRIER)
         self.mgl.write(raw, offset)
 
