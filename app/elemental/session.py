@@ -22,7 +22,7 @@ from elemental.gpu.device import Device
 from elemental.scene.camera_path import camera_at
 from elemental.scene.defaults import add_default_lights, is_unlit
 from elemental.scene.load import load_scene
-from elemental.scene.model import Camera, CameraPath, Environment, Scene
+from elemental.scene.model import Camera, CameraPath, Environment, Scene, framing_camera
 from elemental.settings import Settings
 
 DEFAULT_SCENE = "atrium"
@@ -103,7 +103,9 @@ def choose_camera(scene: Scene, viewpoint: Viewpoint, aspect: float) -> Camera:
         named = {camera.name: camera for camera in reversed(scene.cameras)}
         camera = named[known_name("--camera", viewpoint.camera, list(named), str(scene.path))]
     if viewpoint.eye is not None or viewpoint.target is not None:
-        camera = replace(camera, name="--eye", world_from_view=_look(viewpoint), aspect=None)
+        free = framing_camera(*scene.bounds(), aspect)  # clips by the scene's size, not by a file's
+        world_from_view, fov_y = _look(viewpoint), camera.fov_y
+        camera = replace(free, name="--eye", world_from_view=world_from_view, fov_y=fov_y)
     if viewpoint.fov_deg is not None:
         camera = replace(camera, fov_y=math.radians(viewpoint.fov_deg))
     return camera

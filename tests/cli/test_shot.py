@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from cli.process import elemental
 from cli.schema import mismatches
-from cli.small_scene import write_corner
+from cli.small_scene import corner, write_corner
 from elemental.core.images import read_exr
 from elemental.picture import encode_srgb
 from elemental.report import Report
@@ -48,6 +48,13 @@ def shot(folder: Path, *words: object) -> str:
 def pixels(path: Path) -> NDArray[np.uint8]:
     with PIL.Image.open(path) as image:
         return np.asarray(image)
+
+
+def assert_alike(a: NDArray[np.int64], b: NDArray[np.int64]) -> None:
+    """Equal but for the rounding of depths and positions: 6/255 at most, 1 % of pixels over 2."""
+    difference = np.abs(a - b).max(axis=2)
+    assert difference.max() <= 6
+    assert (difference > 2).mean() <= 0.01
 
 
 def test_two_runs_give_the_same_bytes(tmp_path: Path) -> None:
@@ -114,7 +121,7 @@ def test_cameras_by_name_and_by_place_agree(tmp_path: Path) -> None:
     shot(tmp_path, "-o", "d.png", "--eye", "-1,1,4", "--target", "0,1,0")
     a, b, c, d = (pixels(tmp_path / f"{name}.png").astype(int) for name in "abcd")
     assert np.array_equal(a, b)
-    assert np.abs(a - c).max() <= 2
+    assert_alike(a, c)
     assert np.abs(a - d).max() > 20
 
 
@@ -124,3 +131,35 @@ def test_every_view_can_be_written(tmp_path: Path) -> None:
     for view in views:
         shot(tmp_path, "-o", f"{view}.png", "--view", view)
         assert pixels(tmp_path / f"{view}.png").shape == (32, 48, 3)
+
+
+def test_a_huge_and_a_tiny_scene_look_the_same(tmp_path: Path) -> None:
+    pictures = []
+    for scale in (1e4, 1e-3):  # 20 km and 2 mm across
+        gltf = corner()
+        gltf["nodes"].append({"children": [0, 1, 2, 3], "scale": [scale] * 3})
+        gltf["scenes"][0]["nodes"] = [4]
+        (tmp_path / "scaled.gltf").write_text(json.dumps(gltf))
+        place = ("--eye", f"0,{scale},{4 * scale}", "--target", f"0,{scale},0")
+        words = ("scaled.gltf", "-o", "a.png", *SMALL, *place)
+        result = elemental("shot", *words, cwd=tmp_path)
+        assert result.returncode == 0, result.stderr
+        pictures.append(pixels(tmp_path / "a.png").astype(int))
+    assert pictures[0].std() > 10
+    assert_alike(*pictures)
+
+
+def test_a_scene_that_overflows_its_memory_is_drawn_and_says_what_was_dropped(
+    tmp_path: Path,
+) -> None:
+    write_corner(tmp_path)
+    words = ("--size", "48x32", "--set", "gi.resolution=512", "--set", "gi.memory_budget_mb=16")
+    outputs = ("-o", "a.png", "--report", "r.json")
+    result = elemental("shot", "corner.gltf", *words, *outputs, cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    report = json.loads((tmp_path / "r.json").read_text())
+    dropped = {n: c for n, c in report["counters"].items() if "dropped" in n and c}
+    assert dropped
+    assert len(report["warnings"]) == len(dropped)
+    assert all(line.startswith("elemental: warning: ") for line in result.stderr.splitlines())
+    assert "dropped" in result.stderr

@@ -82,6 +82,9 @@ def test_a_camera_by_place_looks_there(corner: Scene) -> None:
     camera = choose_camera(corner, Viewpoint(eye=(3, 4, 0), target=(0, 0, 0)), 1.5)
     np.testing.assert_allclose(camera.world_from_view[:3, 3], [3, 4, 0], atol=1e-6)
     np.testing.assert_allclose(-camera.world_from_view[:3, 2], [-0.6, -0.8, 0], atol=1e-6)
+    assert camera.fov_y == corner.cameras[0].fov_y
+    assert camera.near < 0.01  # of a scene of 3.5 m, whatever the file's camera says
+    assert camera.far is None
 
 
 @pytest.mark.parametrize(
