@@ -27,7 +27,7 @@ from elemental.scene.model import Camera, Light
 VERT, FRAG = "shadow/depth.vert.glsl", "shadow/depth.frag.glsl"
 DEPTH = Raster(VERT, FRAG)
 DEPTH_MASKED = Raster(VERT, FRAG, defines={"ALPHA_MASK": 1})
-STATE = RasterState(depth_test="lequal", polygon_offset=(1.0, 2.0))
+STATE = RasterState(depth_test="lequal", polygon_offset=(0.0, 4.0))
 """Both faces cast: a single-sided wall shades too. The offset covers rounding; slopes are handled
 by the receiver's shift along its normal (glsl/lib/shadow.glsl)."""
 
