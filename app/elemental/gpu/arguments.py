@@ -69,7 +69,7 @@ def group_counts(
     )
 
 
-def refuse_feedback(node: RasterPass, attached: Attachment, target: ImageRef) -> None:
+def refuse_feedback(node: RasterPass, attached: Attachment, name: str) -> None:
     """Raise GraphError where a pass reads the very level and layer that it renders to.
 
     GL leaves the result undefined [GL 4.3, 9.3]; software drivers hide it.
@@ -84,5 +84,4 @@ def refuse_feedback(node: RasterPass, attached: Attachment, target: ImageRef) ->
             level, levels, layer = look.level, 1, -1 if look.layered else look.layer
         same_level = level <= target_level < level + levels
         if same_level and (layer == target_layer or -1 in (layer, target_layer)):
-            name = target_parts(target)[0].name
             raise GraphError(f"{node.name}: {name} is rendered to and read in one pass")

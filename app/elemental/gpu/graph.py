@@ -28,6 +28,7 @@ from elemental.gpu.binding import (
 )
 from elemental.gpu.formats import Format
 from elemental.gpu.passes import (
+    Attachment,
     ClearBuffer,
     ClearTexture,
     ComputePass,
@@ -186,26 +187,20 @@ class Graph:
         if draw is None:
             require_all(program, node.missing)
         node.draw, node.vertices, node.instances = draw, vertices, instances
+        node.size = size or (0, 0)
         clears = clear_list(clear_color, len(targets), node.name)
-        extent = size
         for target, clear in zip(targets, clears, strict=True):
-            attachment = self._attach(node, target, clear is not None, True)
+            attachment = self._attach(node, target, cleared=clear is not None)
             node.color.append((*attachment, clear))
-            extent = self._extent(node, target, extent)
         if depth is not None:
             writes_depth = state.depth_write and state.depth_test != "none"
             writes_depth |= state.stencil is not None or clear_stencil is not None
-            node.depth = self._attach(node, depth, clear_depth is not None, writes_depth)
+            cleared = clear_depth is not None
+            node.depth = self._attach(node, depth, cleared=cleared, written=writes_depth)
             node.clear_depth, node.clear_stencil = clear_depth, clear_stencil
-            extent = self._extent(node, depth, extent)
-            if writes_depth:
-                refuse_feedback(node, node.depth, depth)
-        for item, target in zip(node.color, targets, strict=True):
-            refuse_feedback(node, item[:3], target)
-        if extent is None:
+        if node.size == (0, 0):
             raise GraphError(f"{node.name}: a pass without targets needs size=")
-        node.size = extent
-        node.viewport = viewport or (0, 0, *extent)
+        node.viewport = viewport or (0, 0, *node.size)
         for used in uses:
             node.reads.append(self._index(used))
         self.passes.append(node)
@@ -311,29 +306,26 @@ class Graph:
         return plan.missing
 
     def _attach(
-        self, node: RasterPass, target: ImageRef, cleared: bool, written: bool
-    ) -> tuple[int, int, int]:
-        """(resource, level, layer or -1) of a render target; notes how it is used."""
+        self, node: RasterPass, target: ImageRef, *, cleared: bool, written: bool = True
+    ) -> Attachment:
+        """Note how a render target is used; all targets of a pass have one size."""
         texture, level, layer = target_parts(target)
-        index = self._index(texture)
-        desc = texture.desc
-        whole = desc.mips == 1 and (layer < 0 or desc.slices == 1)
-        if cleared and whole:
+        index, desc = self._index(texture), texture.desc
+        if written and (index in node.reads or index in node.modifies):
+            refuse_feedback(node, (index, level, layer), texture.name)
+        if cleared and desc.mips == 1 and (layer < 0 or desc.slices == 1):
             node.overwrites.append(index)
         elif written or cleared:
             node.modifies.append(index)
         else:
             node.reads.append(index)
         node.accesses.append((index, c.FRAMEBUFFER_BARRIER, False))
+        size = desc.size[:2] if level == 0 else level_size(desc.size, level)[:2]
+        if node.size != size:
+            if node.size != (0, 0):
+                width, height = size
+                raise GraphError(
+                    f"{node.name}: {texture.name} is {width}x{height}, not {node.size}"
+                )
+            node.size = (size[0], size[1])
         return index, level, layer
-
-    def _extent(
-        self, node: RasterPass, target: ImageRef, extent: tuple[int, int] | None
-    ) -> tuple[int, int]:
-        texture, level, _ = target_parts(target)
-        width, height = level_size(texture.desc.size, level)[:2]
-        if extent is not None and extent != (width, height):
-            raise GraphError(
-                f"{node.name}: target {texture.name} is {width}x{height}, not {extent}"
-            )
-        return width, height
