@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """CPU cost of the frame graph: microseconds of Python a pass, with and without the driver.
 
-    tools/frame_graph_cost.py [--passes 60] [--frames 1000]
+    tools/frame_graph_cost.py [--passes 60] [--frames 1000] [--endurance N]
 
 Each pass is of middling size: three samplers, a storage buffer, an image, two uniform blocks.
 "without the driver" replaces every GL call by an empty function, so it is the Python alone (the
@@ -132,15 +132,28 @@ def without_driver(device: Device, workload: Workload) -> Iterator[None]:
         setattr(gl, name, value)
 
 
+def endure(workload: Workload, frames: int) -> None:
+    """Print the resident memory along ``frames`` frames (Linux)."""
+    for frame in range(frames + 1):
+        workload.declare().execute()
+        if frame in {frames // 50, frames // 2, frames}:
+            pages = int(Path("/proc/self/statm").read_text().split()[1])
+            print(f"after {frame:6} frames: {pages * 4096 / 1e6:.1f} MB resident")
+
+
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--passes", type=int, default=60)
     parser.add_argument("--frames", type=int, default=1000)
+    parser.add_argument("--endurance", type=int, metavar="N", help="print memory over N frames")
     options = parser.parse_args()
     device = Device.headless()
     with tempfile.TemporaryDirectory() as folder:
         workload = Workload(device, Path(folder), options.passes)
+        if options.endurance:
+            endure(workload, options.endurance)
+            return
         workload.measure(10)
         driver = workload.measure(options.frames)
         device.finish()
