@@ -15,7 +15,7 @@ from elemental.gpu.graph import Graph
 from elemental.gpu.refs import TextureHandle
 from elemental.gpu.resources import Texture
 from elemental.passes.camera_view import pack_view
-from elemental.passes.cone_trace.diffuse import combine_diffuse, trace_diffuse
+from elemental.passes.cone_trace.diffuse import CONES, combine_diffuse, trace_diffuse
 from elemental.passes.cone_trace.specular import trace_specular
 from elemental.passes.gbuffer import GBuffer, draw_gbuffer
 from elemental.passes.post.fxaa import fxaa
@@ -156,8 +156,9 @@ class Renderer:
         self, g: Graph, view: Block, gb: GBuffer, octree: Octree, sky: Sky
     ) -> tuple[TextureHandle, TextureHandle]:
         """(irradiance / pi, radiance along the mirrored eye vector)."""
-        radiance = trace_diffuse(g, view, gb, octree, sky)
-        diffuse_gi = combine_diffuse(g, view, gb, radiance)
+        split = self.settings["gi.diffuse_cones"] // CONES
+        radiance = trace_diffuse(g, view, gb, octree, sky, split)
+        diffuse_gi = combine_diffuse(g, view, gb, radiance, split)
         return diffuse_gi, trace_specular(g, view, gb, octree, sky)
 
     def _prepare_voxels(self, view: str) -> VoxelLighting | None:

@@ -129,6 +129,13 @@ _TABLE = (
         source="[Mittring12]",
     ),
     Setting(
+        # 36: nine wide cones lose a third of a small lamp's light to the walls that they touch;
+        # 63 cost 1.7 times as much (docs/gi.md).
+        "gi.diffuse_cones", "choice", 36,
+        "cones over the sphere that gather diffuse light: the talk's nine, whole or divided",
+        unit="cones", choices=(9, 36, 63), source="[Mittring12] [Segovia06]",
+    ),
+    Setting(
         "gi.bounces", "int", 1,
         "gathers of indirect light; with n, voxels hold light gathered n-1 times",
         unit="gathers", lo=0, hi=8, source="[Mittring12] [Crassin11]",

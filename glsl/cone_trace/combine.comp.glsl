@@ -46,7 +46,6 @@ void main() {
             ivec2 at = pixel + ivec2(x, y);
             if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) continue;
             vec4 traced = texelFetch(u_radiance, sub_image_texel(at, size), 0);
-            if (traced.a == REJECTED) continue;
             vec3 neighbour = position_ws_at((vec2(at) + 0.5) * u_view.viewport_px.zw, texelFetch(u_depth, at, 0).r);
             vec3 neighbour_normal = normal10_decode(texelFetch(u_gbuffer_a, at, 0).xyz);
             float off_plane = abs(dot(neighbour - p_ws, normal)) * inverse_tolerance;
@@ -57,14 +56,13 @@ void main() {
             cone_samples[cone] += weight;
         }
     }
-    // Each direction's mean first, so that a direction with fewer accepted samples keeps its weight.
+    // Each cone's mean first, so that a cone with fewer accepted samples keeps its weight.
     vec4 sum = vec4(0.0);
     float weights = 0.0;
     for (int i = 0; i < CONE_COUNT; ++i) {
         if (cone_samples[i] <= 0.0) continue;
-        float weight = cone_weight(normal, CONE_DIRECTIONS[i]);
-        sum += cone_sum[i] * (weight / cone_samples[i]);
-        weights += weight;
+        sum += cone_sum[i] / cone_samples[i];
+        weights += cone_group_weight(normal, i);
     }
     imageStore(o_diffuse_gi, pixel, sum / max(weights, 1e-6));
 }

@@ -22,15 +22,12 @@ void main() {
     ivec2 pixel = at * 3 + cone_offset(cone);
     if (any(greaterThanEqual(pixel, size))) return;
 
-    vec4 result = vec4(0.0, 0.0, 0.0, REJECTED);
+    vec4 result = vec4(0.0);
     float depth = texelFetch(u_depth, pixel, 0).r;
     if (depth < 1.0) {
         vec3 normal = normal10_decode(texelFetch(u_gbuffer_a, pixel, 0).xyz);
-        vec3 direction = CONE_DIRECTIONS[cone];
-        if (dot(normal, direction) > 0.0) {
-            vec3 p_ws = position_ws_at((vec2(pixel) + 0.5) * u_view.viewport_px.zw, depth);
-            result = diffuse_cone(p_ws, normal, direction);
-        }
+        vec3 p_ws = position_ws_at((vec2(pixel) + 0.5) * u_view.viewport_px.zw, depth);
+        result = diffuse_cone(p_ws, normal, cone);
     }
     imageStore(o_radiance, at + part * cone_offset(cone), result);
 }

@@ -19,7 +19,7 @@ vec3 side_weights(vec3 direction) { return direction * direction; }
 // the half space in front of it; sides can only say that with error. The side seen edge-on
 // (cosine 0) gets SIDE_EDGE_ON: 1 is right for what the front sees of it, 0 for the back.
 // sqrt(3) makes all three front sides of a diagonal normal show it whole.
-const float SIDE_EDGE_ON = 0.5;
+const float SIDE_EDGE_ON = 0.75;
 
 float side_visibility(vec3 normal, float cosine) {
     float slope = sqrt(3.0) * cosine;

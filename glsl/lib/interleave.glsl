@@ -1,7 +1,5 @@
 // The 3x3 pattern: pixel p traces cone (p mod 3); the cones' sub-images stand 3x3 in one texture.
 
-const float REJECTED = -1.0;  // alpha of a sample that was not traced
-
 ivec2 cone_offset(int cone) { return ivec2(cone % 3, cone / 3); }
 int cone_of_pixel(ivec2 pixel) { return pixel.x % 3 + 3 * (pixel.y % 3); }
 ivec2 sub_image_size(ivec2 size) { return (size + 2) / 3; }

@@ -16,10 +16,8 @@ vec3 gathered_radiance(vec3 p_ws, vec3 normal, float spacing) {
     vec3 sum = vec3(0.0);
     float weights = 0.0;
     for (int i = 0; i < CONE_COUNT; ++i) {
-        float weight = cone_weight(normal, CONE_DIRECTIONS[i]);
-        if (weight <= 0.0) continue;
-        sum += weight * diffuse_cone(p_ws + normal * (0.5 * spacing), normal, CONE_DIRECTIONS[i]).rgb;
-        weights += weight;
+        sum += diffuse_cone(p_ws + normal * (0.5 * spacing), normal, i).rgb;
+        weights += cone_group_weight(normal, i);
     }
     return sum / max(weights, 1e-6);
 }

@@ -8,7 +8,7 @@ layout(local_size_x = 128) in;
 
 layout(std430) readonly buffer State { OctreeState octree_state; };
 layout(std430) readonly buffer Fragments { VoxelFragment fragments[]; };
-// Four words a voxel each: count and colour; normal and opacity; emitted radiance.
+// Four words a voxel each: count and colour; normal and opacity; emitted radiance and its count.
 layout(std430) buffer ColorSums { uint color_sums[]; };
 layout(std430) buffer NormalSums { int normal_sums[]; };
 layout(std430) buffer EmissiveSums { uint emissive_sums[]; };
@@ -42,4 +42,5 @@ void main() {
     atomicAdd(emissive_sums[voxel], emitted.r);
     atomicAdd(emissive_sums[voxel + 1u], emitted.g);
     atomicAdd(emissive_sums[voxel + 2u], emitted.b);
+    atomicAdd(emissive_sums[voxel + 3u], 1u);
 }

@@ -22,9 +22,12 @@ void main() {
         vec4 albedo = vec4(color.yzw, normal.w) * (inverse / 255.0);
         result.albedo = packUnorm4x8(albedo);
         result.normal = packSnorm4x8(vec4(vec3(normal.xyz) * (inverse / 127.0), 0.0));
+        // Emission is averaged over what emits: a lamp keeps its power where the ceiling that it
+        // hangs from shares its voxels.
         if (u_octree.fixed_point > 0.0) {
-            vec3 emitted = vec3(emissive_sums[voxel].xyz) * (inverse / u_octree.fixed_point);
-            result.emissive = rgb9e5_pack(emitted);
+            uvec4 emitted = emissive_sums[voxel];
+            float scale = 1.0 / (float(max(emitted.w, 1u)) * u_octree.fixed_point);
+            result.emissive = rgb9e5_pack(vec3(emitted.xyz) * scale);
         }
         result.fragments = color.x;
     }
