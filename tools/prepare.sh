@@ -37,7 +37,7 @@ install_system_packages() {
     fi
     if [ "$(id -u)" -ne 0 ]; then
         say "packages are missing; install them and try again:"
-        printf '    sudo %s\n' "$command" >&2
+        printf '    sudo apt-get update && sudo %s\n' "$command" >&2
         exit 1
     fi
     say "installing $missing"
