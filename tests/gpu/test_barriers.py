@@ -177,7 +177,6 @@ STORAGE, IMAGE, FETCH = (
         ("store load", [IMAGE]),
         ("store store", [IMAGE]),
         ("store render", [c.FRAMEBUFFER_BARRIER]),
-        ("store clear_image", [c.TEXTURE_UPDATE_BARRIER]),
         ("render fetch", []),
         ("render store", [IMAGE]),
         ("fetch store fetch", [IMAGE, FETCH]),
@@ -196,6 +195,21 @@ def test_a_write_in_one_frame_is_seen_by_the_next(steps: Steps, issued: list[int
     steps.run("write")
     steps.run("read")
     assert issued == [STORAGE]
+
+
+def test_clearing_an_image_after_stores(device: Device, steps: Steps, issued: list[int]) -> None:
+    """GL 4.4 clears textures; before, they are cleared by rendering."""
+    native = device.gl.has_clear_tex_image
+    steps.run("store clear_image")
+    assert issued == [c.TEXTURE_UPDATE_BARRIER if native else c.FRAMEBUFFER_BARRIER]
+
+
+def test_shader_writes_wait_for_uploads(steps: Steps, issued: list[int]) -> None:
+    steps.buffer.write(bytes(256))
+    steps.run("write")
+    steps.image.write(bytes(256))
+    steps.run("store")
+    assert issued == [c.BUFFER_UPDATE_BARRIER, STORAGE, c.TEXTURE_UPDATE_BARRIER, IMAGE]
 
 
 def test_reading_on_the_cpu_waits_for_shader_writes(

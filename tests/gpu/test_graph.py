@@ -147,6 +147,14 @@ def test_parameters_arrive_and_equal_ones_are_uploaded_once(
     seconds.release()
 
 
+def test_the_parameter_ring_turns(device: Device) -> None:
+    """A frame in flight may still read its blocks, so they are not overwritten."""
+    device.params.upload()
+    places = [device.params.upload() for _ in range(6)]
+    assert len(set(places[:3])) == 3
+    assert places[:3] == places[3:]
+
+
 def test_names_are_checked(device: Device, fill: Compute, double: Raster) -> None:
     graph = device.begin_frame()
     image = graph.texture("image", (8, 8), RGBA16F)

@@ -38,6 +38,19 @@ def test_each_mip_from_the_one_above(device: Device, sources: Sources) -> None:
         assert (texels == 0.5**level).all()
 
 
+def test_clearing_one_mip_keeps_the_others(device: Device, sources: Sources) -> None:
+    shader = sources.full_screen("o_color = vec4(1.0);")
+    graph = device.begin_frame()
+    image = graph.texture("image", (4, 4), RGBA16F, mips=2)
+    graph.raster(shader, color=Mip(image, 0))
+    graph.raster(shader, color=Mip(image, 1), clear_color=(0.5,) * 4, vertices=0)
+    graph.keep(image)
+    graph.execute()
+    assert image.physical
+    assert (image.physical.read(0) == 1).all()
+    assert (image.physical.read(1) == 0.5).all()
+
+
 def test_each_mip_by_image_stores(device: Device, sources: Sources) -> None:
     shader = sources.compute(
         "ivec3 p = ivec3(gl_GlobalInvocationID);"
@@ -141,6 +154,7 @@ def test_several_targets_with_their_own_clears_and_blending(
     graph = device.begin_frame()
     a, b = (graph.texture(name, (4, 4), RGBA16F) for name in "ab")
     ids = graph.texture("ids", (4, 4), R32UI)
+    graph.raster(shader, color=[a, b, ids], state=RasterState(blend="add"))
     state = RasterState(blend=("add", None, None))
     graph.raster(
         shader, color=[a, b, ids], state=state, viewport=(0, 0, 2, 4),

@@ -96,6 +96,11 @@ def test_a_late_writer_waits_for_the_readers_of_the_version_before() -> None:
     assert plan(passes, kept="z")[1] == "make late use clear show"
 
 
+def test_a_pass_that_writes_a_resource_twice_does_not_wait_for_itself() -> None:
+    passes = [P("show", r="x", m="z"), P("two mips", m="xx")]
+    assert plan(passes, kept="z")[1] == "two mips show"
+
+
 def test_a_cycle_is_an_error_that_names_the_passes() -> None:
     passes = [P("a", r="y", m="x"), P("b", r="x", m="y")]
     with pytest.raises(PlanError, match="wait for each other: a, b"):
