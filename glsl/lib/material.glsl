@@ -1,21 +1,20 @@
 // evaluate_material: what a material says about a surface point, in the talk's terms. Used by every
-// pass that draws meshes. MATERIAL_TEXTURED=0 leaves the texture fetches out.
+// pass that draws meshes. MATERIAL_TEXTURES is the mask of the slots (1 << SLOT_*) that may have a
+// texture; the fetches of the others are left out.
 #include "shared/gbuffer.glsl"
 #include "shared/material.glsl"
 #include "lib/brdf.glsl"
 
-#ifndef MATERIAL_TEXTURED
-#define MATERIAL_TEXTURED 1
+#ifndef MATERIAL_TEXTURES
+#define MATERIAL_TEXTURES 31
 #endif
 
-#if MATERIAL_TEXTURED
 // Absent textures are bound to a 1x1 white one (a flat normal for u_normal_texture).
 uniform sampler2D u_base_color_texture;          // sRGB
 uniform sampler2D u_metallic_roughness_texture;  // g: roughness, b: metallic
 uniform sampler2D u_normal_texture;
 uniform sampler2D u_occlusion_texture;           // r
 uniform sampler2D u_emissive_texture;            // sRGB
-#endif
 
 // Reflectance of a dielectric at normal incidence, glTF 2.0 appendix B (index of refraction 1.5).
 const vec3 DIELECTRIC_SPECULAR = vec3(0.04);
@@ -43,7 +42,7 @@ vec2 material_uv(uint material, uint slot, vec2 uv0, vec2 uv1) {
 // Only the opacity: for passes that need the alpha test and nothing else.
 float material_opacity(uint material, vec2 uv0, vec2 uv1, float vertex_alpha) {
     float opacity = materials[material].base_color.a * vertex_alpha;
-#if MATERIAL_TEXTURED
+#if (MATERIAL_TEXTURES & 1) != 0
     opacity *= texture(u_base_color_texture, material_uv(material, SLOT_BASE_COLOR, uv0, uv1)).a;
 #endif
     return opacity;
@@ -59,18 +58,26 @@ Surface evaluate_material(uint material, vec2 uv0, vec2 uv1, vec4 vertex_color) 
     Surface s;
     s.normal_ts = vec3(0.0, 0.0, 1.0);
     s.ambient_occlusion = 1.0;
-#if MATERIAL_TEXTURED
+#if (MATERIAL_TEXTURES & 1) != 0
     base_color *= texture(u_base_color_texture, material_uv(material, SLOT_BASE_COLOR, uv0, uv1));
+#endif
+#if (MATERIAL_TEXTURES & 2) != 0
     vec4 mr = texture(u_metallic_roughness_texture,
                       material_uv(material, SLOT_METALLIC_ROUGHNESS, uv0, uv1));
     roughness *= mr.g;
     metallic *= mr.b;
+#endif
+#if (MATERIAL_TEXTURES & 4) != 0
     vec3 n = texture(u_normal_texture, material_uv(material, SLOT_NORMAL, uv0, uv1)).xyz;
     n = (n * 255.0 - 128.0) / 127.0;  // code 128 is 0: a flat normal map stays flat
     n.xy *= materials[material].normal_scale;
     s.normal_ts = normalize(vec3(n.xy, max(n.z, 1e-3)));
+#endif
+#if (MATERIAL_TEXTURES & 8) != 0
     float ao = texture(u_occlusion_texture, material_uv(material, SLOT_OCCLUSION, uv0, uv1)).r;
     s.ambient_occlusion = 1.0 + materials[material].occlusion_strength * (ao - 1.0);
+#endif
+#if (MATERIAL_TEXTURES & 16) != 0
     emissive *= texture(u_emissive_texture, material_uv(material, SLOT_EMISSIVE, uv0, uv1)).rgb;
 #endif
     s.albedo = base_color.rgb * (1.0 - metallic);

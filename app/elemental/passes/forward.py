@@ -44,7 +44,7 @@ def draw_translucent(
         reads["u_diffuse_gi"] = diffuse_gi
 
     def draw(enc: Encoder) -> None:
-        scene.draw(enc, BLEND, eye=view["eye_ws"])
+        scene.draw(enc, scene.back_to_front(view["eye_ws"]), in_view=True)
 
     g.raster(
         VARIANTS[int(diffuse_gi is not None)],

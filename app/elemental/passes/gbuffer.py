@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
 
 from elemental.core.layout import Block
 from elemental.gpu.encode import Encoder
@@ -12,7 +16,7 @@ from elemental.gpu.refs import Ref, TextureHandle
 from elemental.gpu.shaders import Raster
 from elemental.gpu.state import RasterState
 from elemental.passes.scene_gpu import GpuScene
-from elemental.passes.scene_pack import SOLID
+from elemental.passes.scene_pack import SOLID, Batch
 from elemental.scene.model import AlphaMode
 
 VERT, FRAG = "gbuffer/gbuffer.vert.glsl", "gbuffer/gbuffer.frag.glsl"
@@ -20,16 +24,12 @@ STATE = RasterState(cull="back", depth_test="lequal")
 CLEAR = (0.0, 0.0, 0.0, 0.0)
 
 
-def _variant(alpha_mode: AlphaMode, textured: bool) -> Raster:
-    defines = {"MATERIAL_TEXTURED": int(textured)}
+@cache
+def _shader(alpha_mode: AlphaMode, texture_mask: int) -> Raster:
+    defines = {"MATERIAL_TEXTURES": texture_mask}
     if alpha_mode == "mask":
         defines["ALPHA_MASK"] = 1
     return Raster(VERT, FRAG, defines=defines)
-
-
-VARIANTS: dict[tuple[AlphaMode, bool], Raster] = {
-    (mode, textured): _variant(mode, textured) for mode in SOLID for textured in (False, True)
-}
 
 
 @dataclass(frozen=True)
@@ -69,23 +69,25 @@ def draw_gbuffer(g: Graph, view: Block, scene: GpuScene, size: tuple[int, int]) 
         c=g.texture("gbuffer.c", size=size, format=RGBA8),
         d=g.texture("gbuffer.d", size=size, format=RGBA8),
     )
-    present = [key for key in VARIANTS if scene.batches((key[0],), key[1])] or [("opaque", False)]
-    for number, (mode, textured) in enumerate(present):
+    scene.look(np.asarray(view["clip_from_world"]).T)
+    groups: dict[tuple[AlphaMode, int], list[Batch]] = defaultdict(list)
+    for batch in scene.batches(SOLID):
+        groups[batch.alpha_mode, batch.texture_mask].append(batch)
+    for number, (key, batches) in enumerate((groups or {("opaque", 0): []}).items()):
 
-        def draw(enc: Encoder, mode: AlphaMode = mode, textured: bool = textured) -> None:
-            scene.draw(enc, (mode,), textured=textured)
+        def draw(enc: Encoder, batches: list[Batch] = batches, mask: int = key[1]) -> None:
+            scene.draw(enc, batches, texture_mask=mask, in_view=True)
 
-        first = number == 0
         g.raster(
-            VARIANTS[mode, textured],
-            name=f"gbuffer.{mode}{'.textured' if textured else ''}",
+            _shader(*key),
+            name=f"gbuffer.{key[0]}.{key[1]}",
             color=[gb.scene_color, gb.a, gb.b, gb.c, gb.d],
             depth=gb.depth,
             reads={"Instances": scene.instances, "Materials": scene.materials},
             params={"View": view},
             state=STATE,
-            clear_color=CLEAR if first else None,
-            clear_depth=1.0 if first else None,
+            clear_color=CLEAR if number == 0 else None,
+            clear_depth=1.0 if number == 0 else None,
             draw=draw,
         )
     return gb

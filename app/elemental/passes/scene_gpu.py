@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,9 +11,17 @@ from elemental.gpu.device import Device
 from elemental.gpu.encode import Encoder
 from elemental.gpu.formats import RGBA8, SRGB8_A8
 from elemental.gpu.refs import Sampled
-from elemental.gpu.resources import Buffer, Texture, mip_count
+from elemental.gpu.resources import Buffer, Texture, VertexInput, mip_count
 from elemental.passes import scene_pack
-from elemental.passes.scene_pack import BLEND, CATEGORIES, OPAQUE, SLOTS, Array, Batch
+from elemental.passes.scene_pack import (
+    ALL_SLOTS,
+    BLEND,
+    CATEGORIES,
+    OPAQUE,
+    SLOTS,
+    Array,
+    Batch,
+)
 from elemental.scene.model import AlphaMode, Scene
 from elemental.scene.model import Texture as Image
 
@@ -38,7 +47,6 @@ class GpuScene:
         self.triangle_count = scene.triangle_count
         geometry = scene_pack.pack_geometry(scene)
         commands, numbers, self._batches = scene_pack.pack_draws(scene, geometry)
-
         self._buffers: list[Buffer] = []
 
         def upload(name: str, values: Array) -> Buffer:
@@ -47,63 +55,139 @@ class GpuScene:
 
         self.instances = upload("instances", scene_pack.pack_instances(scene))
         self.materials = upload("materials", scene_pack.pack_materials(scene))
-        self._commands = upload("draws", commands)
         indices = upload("indices", geometry.indices)
         position = (upload("positions", geometry.positions), "3f", ("a_position",))
-        instance = (upload("draw_order", numbers), "1u/i", ("a_instance",))
         surface = (upload("surface", geometry.surface), "3f 4f 2f 2f 4f1", SURFACE_NAMES)
-        self._positions_only = device.vertex_input([position, instance], indices)
-        self._vertices = device.vertex_input([position, surface, instance], indices)
+
+        def place(name: str) -> Placed:
+            order = upload(f"{name}.order", numbers)
+            instance = (order, "1u/i", ("a_instance",))
+            return Placed(
+                upload(f"{name}.draws", commands),
+                order,
+                device.vertex_input([position, surface, instance], indices),
+                device.vertex_input([position, instance], indices),
+            )
+
+        self._all = place("all")
+        self._in_view = place("in_view")
+        self._culling = Culling(commands, numbers, *scene_pack.instance_boxes(scene))
         self._textures = MaterialTextures(device, scene, self._batches)
-        self._centers = {
-            batch.instance: scene_pack.instance_center(scene, batch.instance)
-            for batch in self.batches(BLEND)
-        }
 
     def release(self) -> None:
         """Free everything."""
-        for held in (self._positions_only, self._vertices, self._textures, *self._buffers):
-            held.release()
+        for placed in (self._all, self._in_view):
+            placed.vertices.release()
+            placed.positions_only.release()
+        self._textures.release()
+        for buffer in self._buffers:
+            buffer.release()
+
+    def look(self, clip_from_world: Array) -> None:
+        """Leave out of `draw(in_view=True)` what the camera can't see."""
+        changed = self._culling.look(clip_from_world)
+        if changed is not None:
+            commands, order = changed
+            self._in_view.commands.write(commands)
+            self._in_view.order.write(order)
 
     def batches(
         self, alpha_modes: Collection[AlphaMode], textured: bool | None = None
     ) -> list[Batch]:
         """The batches of these alpha modes; `textured` keeps those with, or without, textures."""
-        return [b for b in self._batches
-                if b.alpha_mode in alpha_modes and textured in (None, b.textured)]  # fmt: skip
+        wanted = (True, False) if textured is None else (textured,)
+        return [
+            batch
+            for batch in self._batches
+            if batch.alpha_mode in alpha_modes and (batch.texture_mask != 0) in wanted
+        ]
+
+    def back_to_front(self, eye: Array) -> list[Batch]:
+        """The blended batches, one an instance, by the distance of its centre to eye (3,)."""
+        centers = self._culling.centers
+
+        def distance(batch: Batch) -> float:
+            return float(np.linalg.norm(centers[batch.instance] - eye))
+
+        return sorted(self.batches(BLEND), key=distance, reverse=True)
 
     def draw(
         self,
         encoder: Encoder,
-        alpha_modes: Collection[AlphaMode] = OPAQUE,
+        batches: Iterable[Batch],
         *,
-        textured: bool | None = None,
+        texture_mask: int = ALL_SLOTS,
         cull: bool = True,
-        eye: Array | None = None,
+        in_view: bool = False,
     ) -> None:
-        """Draw with every attribute and, unless `textured` is False, the material textures bound.
+        """Draw batches with every attribute.
 
-        `cull` hides the back faces of single-sided materials; without it the pass's state stays.
-        `eye` (3,): blended instances are drawn in the order of their centres, the farthest first.
+        `texture_mask`: the shader's MATERIAL_TEXTURES. `cull` hides the back faces of single-sided
+        materials; without it the pass's state stays. `in_view`: only what `look` last saw.
         """
-        batches = self.batches(alpha_modes, textured)
-        if eye is not None:
-            batches.sort(key=lambda b: -float(np.linalg.norm(self._centers[b.instance] - eye)))
+        placed = self._in_view if in_view else self._all
+        bound: dict[str, int] = {}
         for batch in batches:
             if cull:
                 encoder.set(cull="none" if batch.double_sided else "back")
-            if textured is not False:
-                for slot, texture in zip(SLOTS, batch.textures, strict=True):
+            for index, (slot, texture) in enumerate(zip(SLOTS, batch.textures, strict=True)):
+                if texture_mask >> index & 1 and bound.get(slot) != texture:
                     encoder.bind(f"u_{slot}_texture", self._textures.sampled(slot, texture))
-            encoder.draw_indirect(self._vertices, self._commands, batch.count, batch.first)
+                    bound[slot] = texture
+            encoder.draw_indirect(placed.vertices, placed.commands, batch.count, batch.first)
 
     def draw_positions(self, encoder: Encoder, alpha_modes: Collection[AlphaMode] = OPAQUE) -> None:
         """Draw with the attributes a_position and a_instance only, culling left as it is."""
+        placed = self._all
         for mode in CATEGORIES:
             batches = self.batches((mode,)) if mode in alpha_modes else []
             if batches:
-                count = sum(batch.count for batch in batches)
-                encoder.draw_indirect(self._positions_only, self._commands, count, batches[0].first)
+                count, first = sum(batch.count for batch in batches), batches[0].first
+                encoder.draw_indirect(placed.positions_only, placed.commands, count, first)
+
+
+@dataclass(frozen=True)
+class Placed:
+    """Draw commands, the instance numbers that they index, and the vertex inputs over both."""
+
+    commands: Buffer
+    order: Buffer
+    vertices: VertexInput
+    positions_only: VertexInput
+
+
+class Culling:
+    """Which instances a camera sees, as draw commands with fewer instances each.
+
+    commands (D,) DRAW_COMMAND, order (N,) instance numbers in draw order, low and high (N, 3) world
+    boxes by instance number.
+    """
+
+    def __init__(self, commands: Array, order: Array, low: Array, high: Array) -> None:
+        self._commands, self._order = commands, order
+        self._segment = np.repeat(np.arange(len(commands)), commands["instance_count"])
+        self.centers = (low + high) / 2
+        self._half = (high - low) / 2
+        self._looked: bytes = b""
+
+    def look(self, clip_from_world: Array) -> tuple[Array, Array] | None:
+        """(commands, order) for this camera, None if it is the one looked at last."""
+        key = clip_from_world.tobytes()
+        if key == self._looked:
+            return None
+        self._looked = key
+        seen = self.visible(clip_from_world)[self._order]
+        commands = self._commands.copy()
+        commands["instance_count"] = np.add.reduceat(seen, commands["base_instance"], dtype="<u4")
+        return commands, self._order[np.lexsort((~seen, self._segment))]
+
+    def visible(self, clip_from_world: Array) -> Array:
+        """(N,) bool: instances whose box is not wholly outside one of the frustum's planes."""
+        m = clip_from_world.astype(np.float64)
+        planes = np.concatenate([m[3] + m[:3], m[3] - m[:3]])
+        reach = self._half @ np.abs(planes[:, :3]).T
+        distance = self.centers @ planes[:, :3].T + planes[:, 3]
+        return np.asarray(np.all(distance + reach >= 0.0, axis=1))
 
 
 class MaterialTextures:

@@ -27,6 +27,9 @@ BLEND: tuple[AlphaMode, ...] = ("blend",)
 
 SLOTS = ("base_color", "metallic_roughness", "normal", "occlusion", "emissive")
 """Texture slots, in the order of SLOT_* in glsl/shared/material.glsl."""
+BASE_COLOR_SLOT = 1
+ALL_SLOTS = (1 << len(SLOTS)) - 1
+"""MATERIAL_TEXTURES of a shader that samples every slot."""
 
 SURFACE_VERTEX = np.dtype(
     [
@@ -80,9 +83,9 @@ class Batch:
     """The only instance of a blended batch, else -1."""
 
     @property
-    def textured(self) -> bool:
-        """Whether any slot has a texture."""
-        return max(self.textures) >= 0
+    def texture_mask(self) -> int:
+        """Bit by SLOTS: the slot has a texture."""
+        return slot_mask(texture >= 0 for texture in self.textures)
 
 
 def pack_geometry(scene: Scene) -> Geometry:
@@ -133,8 +136,8 @@ def pack_materials(scene: Scene) -> Array:
         occlusion_strength=column("occlusion_strength"),
         alpha_cutoff=column("alpha_cutoff"),
         flags=[_flags(material) for material in materials],
-        texture_mask=[_slot_mask(s is not None for s in by_slot) for by_slot in slots],
-        uv_set_mask=[_slot_mask(s is not None and s.uv_set == 1 for s in by_slot)
+        texture_mask=[slot_mask(s is not None for s in by_slot) for by_slot in slots],
+        uv_set_mask=[slot_mask(s is not None and s.uv_set == 1 for s in by_slot)
                      for by_slot in slots],
         uv_row_u=rows[:, :, 0],
         uv_row_v=rows[:, :, 1],
@@ -152,7 +155,7 @@ def _flags(material: Material) -> int:
     return sum(int(constant(f"MATERIAL_{name}")) for name, holds in said.items() if holds)
 
 
-def _slot_mask(held: Iterable[bool]) -> int:
+def slot_mask(held: Iterable[bool]) -> int:
     return sum(1 << index for index, holds in enumerate(held) if holds)
 
 
@@ -194,12 +197,15 @@ def pack_draws(scene: Scene, geometry: Geometry) -> tuple[Array, Array, list[Bat
     return np.array(commands, DRAW_COMMAND), np.array(order, "<u4"), batches
 
 
-def instance_center(scene: Scene, number: int) -> Array:
-    """(3,) middle of an instance's bounding box, m."""
-    instance = scene.instances[number]
-    positions = scene.meshes[instance.mesh].positions
-    points = transforms.transform_points(instance.world_from_local, positions)
-    return np.asarray((points.min(axis=0) + points.max(axis=0)) / 2)
+def instance_boxes(scene: Scene) -> tuple[Array, Array]:
+    """(low, high), each (N, 3) m, of every instance's world box."""
+    boxes = []
+    for instance in scene.instances:
+        positions = scene.meshes[instance.mesh].positions
+        points = transforms.transform_points(instance.world_from_local, positions)
+        boxes.append((points.min(axis=0), points.max(axis=0)))
+    low, high = zip(*boxes, strict=True)
+    return np.array(low), np.array(high)
 
 
 def _batch_key(scene: Scene, number: int) -> tuple[int, bool, tuple[int, ...], int]:

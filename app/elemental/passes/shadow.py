@@ -20,13 +20,13 @@ from elemental.gpu.resources import Buffer, Texture
 from elemental.gpu.shaders import Raster
 from elemental.gpu.state import RasterState
 from elemental.passes.scene_gpu import GpuScene
-from elemental.passes.scene_pack import MASKED, Array
+from elemental.passes.scene_pack import BASE_COLOR_SLOT, MASKED, Array
 from elemental.passes.shadow_plan import CASCADE, MAPS, ShadowPlan, ShadowSettings, plan_shadows
 from elemental.scene.model import Camera, Light
 
 VERT, FRAG = "shadow/depth.vert.glsl", "shadow/depth.frag.glsl"
 DEPTH = Raster(VERT, FRAG)
-DEPTH_MASKED = Raster(VERT, FRAG, defines={"ALPHA_MASK": 1})
+DEPTH_MASKED = Raster(VERT, FRAG, defines={"ALPHA_MASK": 1, "MATERIAL_TEXTURES": BASE_COLOR_SLOT})
 STATE = RasterState(depth_test="lequal", polygon_offset=(0.0, 4.0))
 """Both faces cast: a single-sided wall shades too. The offset covers rounding; slopes are handled
 by the receiver's shift along its normal (glsl/lib/shadow.glsl)."""
@@ -140,7 +140,7 @@ def _draw_view(g: Graph, maps: ShadowMaps, scene: GpuScene, view: Array, number:
         scene.draw_positions(enc)
 
     def draw_masked(enc: Encoder) -> None:
-        scene.draw(enc, MASKED, cull=False)
+        scene.draw(enc, scene.batches(MASKED), texture_mask=BASE_COLOR_SLOT, cull=False)
 
     reads = {"Instances": scene.instances, "ShadowViews": shader_inputs["ShadowViews"]}
     g.raster(

@@ -10,13 +10,13 @@ from elemental.gpu.refs import BufferHandle
 from elemental.gpu.shaders import Raster
 from elemental.gpu.state import RasterState
 from elemental.passes.scene_gpu import GpuScene
+from elemental.passes.scene_pack import ALL_SLOTS, Batch
 from elemental.passes.voxel.octree import Survey
 from elemental.scene.model import AlphaMode
 
 VERT, FRAG = "voxel/voxelize.vert.glsl", "voxel/voxelize.frag.glsl"
 VARIANTS = {
-    textured: Raster(VERT, FRAG, defines={"MATERIAL_TEXTURED": int(textured)})
-    for textured in (False, True)
+    mask: Raster(VERT, FRAG, defines={"MATERIAL_TEXTURES": mask}) for mask in (0, ALL_SLOTS)
 }
 BOTH_SIDES = RasterState(cull="none", depth_test="none", depth_write=False)
 ALPHA_MODES: tuple[AlphaMode, ...] = ("opaque", "mask", "blend")
@@ -32,17 +32,18 @@ def voxelize(g: Graph, scene: GpuScene, octree: Survey) -> BufferHandle:
     nbytes = octree.capacity.fragments * layouts().struct("VoxelFragment").itemsize
     fragments = g.buffer("voxel.fragments", nbytes)
     side = octree.grid.resolution
-    for textured, shader in VARIANTS.items():
-        if not scene.batches(ALPHA_MODES, textured):
+    for mask, shader in VARIANTS.items():
+        batches = scene.batches(ALPHA_MODES, textured=mask != 0)
+        if not batches:
             continue
 
-        def draw(encoder: Encoder, textured: bool = textured) -> None:
-            scene.draw(encoder, ALPHA_MODES, textured=textured, cull=False)
+        def draw(encoder: Encoder, batches: list[Batch] = batches, mask: int = mask) -> None:
+            scene.draw(encoder, batches, texture_mask=mask, cull=False)
 
         for axis, name in enumerate("xyz"):
             g.raster(
                 shader,
-                f"voxelize.{name}{'.textured' if textured else ''}",
+                f"voxelize.{name}{'.textured' if mask else ''}",
                 size=(side, side),
                 state=BOTH_SIDES,
                 reads={"Instances": scene.instances, "Materials": scene.materials},
