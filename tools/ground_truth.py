@@ -12,9 +12,12 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import mitsuba as mi
+import numpy as np
 
 from elemental.core.errors import InputError
 from elemental.core.images import read_environment
@@ -24,7 +27,7 @@ from elemental.session import Stage, Viewpoint, set_stage
 mi.set_variant("scalar_rgb")
 
 from reference.cache import cached, fingerprint  # noqa: E402  (mitsuba first needs its variant)
-from reference.metrics import compare, hdr_flip, table, to_json  # noqa: E402
+from reference.metrics import compare, hdr_flip, noise, table, to_json  # noqa: E402
 from reference.mitsuba_scene import Job, emission_mask, path_trace  # noqa: E402
 from reference.sheet import sheet  # noqa: E402
 
@@ -70,30 +73,32 @@ def shoot(words: argparse.Namespace, stage: Stage) -> FloatArray:
             command += ["--fov", str(words.fov)]
         for assignment in words.set:
             command += ["--set", assignment]
-        if subprocess.run(command, check=False).returncode != 0:
+        if subprocess.run(command, stdout=subprocess.DEVNULL, check=False).returncode != 0:
             raise InputError("shot", "", "failed")
         return read_environment(output)
 
 
-def reference(stage: Stage, job: Job) -> tuple[FloatArray, FloatArray]:
-    """(the path-traced picture (H, W, 3), the mask (H, W) of pixels that see no light source)."""
-    scene = stage.scene
+def reference(stage: Stage, job: Job) -> tuple[tuple[FloatArray, FloatArray], FloatArray]:
+    """Two independent path-traced halves (H, W, 3), and the mask (H, W) of `emission_mask`."""
+    scene, camera = stage.scene, stage.camera
     content = (scene.meshes, scene.instances, scene.materials, scene.textures, scene.lights)
-    key = fingerprint(*content, scene.environment, stage.camera, job)
+    content_key = fingerprint(*content, scene.environment, camera)
     start = time.monotonic()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        picture, known = cached(
-            OUT / "cache", key, lambda: path_trace(scene, stage.camera, job, folder)
+
+        def picture(kind: str, make: Callable[[Job], FloatArray], seed: int) -> FloatArray:
+            half = replace(job, samples=max(job.samples // 2, 1), seed=seed)
+            key = fingerprint(content_key, half, kind)
+            return cached(OUT / "cache", key, lambda: make(half))
+
+        first, second = (
+            picture("radiance", lambda half: path_trace(scene, camera, half, folder), seed)
+            for seed in (0, 1)
         )
-        mask, _ = cached(
-            OUT / "cache",
-            f"{key}-mask",
-            lambda: emission_mask(scene, stage.camera, job, folder)[..., None].repeat(3, axis=2),
-        )
-    if not known:
-        print(f"path traced in {time.monotonic() - start:.1f} s", file=sys.stderr)
-    return picture, mask[..., 0]
+        mask = picture("mask", lambda half: emission_mask(scene, camera, half, folder), 0)
+    print(f"reference in {time.monotonic() - start:.1f} s", file=sys.stderr)
+    return (first, second), mask[..., 0]
 
 
 def main() -> int:
@@ -114,7 +119,8 @@ def run(words: argparse.Namespace) -> int:
     bounces = int(settings["gi.bounces"]) if settings["gi.enabled"] else 0
     job = Job((width, height), words.spp, bounces, float(settings["sky.intensity"]))
     ours = shoot(words, stage) if words.ours is None else read_environment(words.ours)
-    picture, mask = reference(stage, job)
+    halves, mask = reference(stage, job)
+    picture = (halves[0] + halves[1]) * np.float32(0.5)
     figures = {
         "scene": words.scene,
         "size": words.size,
@@ -125,6 +131,7 @@ def run(words: argparse.Namespace) -> int:
         "hdr_flip": hdr_flip(ours, picture),
         "all": compare(ours, picture, mask * 0 + 1),
         "surfaces": compare(ours, picture, mask),
+        "reference_noise": noise(*halves, mask),
     }
     print(table(figures))
     stem = words.out or OUT / Path(words.scene).stem

@@ -41,12 +41,10 @@ def _feed(digest: hashlib._Hash, part: object) -> None:
         digest.update(f"{part!r};".encode())
 
 
-def cached(folder: Path, key: str, make: Callable[[], FloatArray]) -> tuple[FloatArray, bool]:
-    """The picture (H, W, 3) of `folder/key.exr`, made if it is missing; whether it was there."""
+def cached(folder: Path, key: str, make: Callable[[], FloatArray]) -> FloatArray:
+    """The picture (H, W, 3) of `folder/key.exr`, made if it is missing."""
     path = folder / f"{key}.exr"
-    if path.is_file():
-        return read_environment(path), True
-    picture = make()
-    folder.mkdir(parents=True, exist_ok=True)
-    write_exr(path, picture)
-    return picture, False
+    if not path.is_file():
+        folder.mkdir(parents=True, exist_ok=True)
+        write_exr(path, make())
+    return read_environment(path)

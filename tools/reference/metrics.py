@@ -46,6 +46,16 @@ def compare(ours: FloatArray, reference: FloatArray, mask: FloatArray) -> dict[s
     }
 
 
+def noise(first: FloatArray, second: FloatArray, mask: FloatArray) -> dict[str, float]:
+    """Relative error that the mean of two independent halves still has by itself, by percentile.
+
+    Their half difference has the deviation of their mean.
+    """
+    mean = 0.5 * (first + second)
+    error = np.abs(relative_error(first, mean))[mask > 0.0]
+    return {f"p{p}": float(np.percentile(error, p)) if error.size else 0.0 for p in PERCENTILES}
+
+
 def hdr_flip(ours: FloatArray, reference: FloatArray) -> float:
     """Mean HDR-FLIP [Andersson21] over the whole picture, 0 (equal) to 1."""
     _, mean, _ = flip_evaluator.evaluate(
@@ -58,7 +68,8 @@ def hdr_flip(ours: FloatArray, reference: FloatArray) -> float:
 
 def table(figures: dict[str, Any]) -> str:
     """The figures as lines for a terminal."""
-    lines = [f"HDR-FLIP {figures['hdr_flip']:.4f}"]
+    floor = "  ".join(f"{p} {v:.1%}" for p, v in figures["reference_noise"].items())
+    lines = [f"HDR-FLIP {figures['hdr_flip']:.4f}", f"reference's own noise   {floor}"]
     for name in ("all", "surfaces"):
         f = figures[name]
         if not f["pixels"]:

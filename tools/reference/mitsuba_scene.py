@@ -24,15 +24,19 @@ from elemental.scene.model import Camera, FloatArray, Light, Scene
 from reference.bsdf import Entry, MaterialConverter
 from reference.ply import world_meshes, write_ply
 
+MASK_SAMPLES = 16
+"""Samples that look for a light source in a pixel."""
+
 
 @dataclass(frozen=True)
 class Job:
-    """What to path-trace: image size (width, height), samples a pixel, gathers, sky factor."""
+    """What to path-trace: size (width, height) in pixels, samples a pixel, gathers, sky factor."""
 
     size: tuple[int, int]
     samples: int
     bounces: int
     sky_intensity: float = 1.0
+    seed: int = 0
 
 
 def path_trace(scene: Scene, camera: Camera, job: Job, folder: Path) -> FloatArray:
@@ -50,12 +54,13 @@ def path_trace(scene: Scene, camera: Camera, job: Job, folder: Path) -> FloatArr
 
 
 def emission_mask(scene: Scene, camera: Camera, job: Job, folder: Path) -> FloatArray:
-    """Where the eye meets no emission and no sky: (H, W) float32, 1 or 0."""
+    """Where the eye meets no emission and no sky: (H, W, 3) float32, 1 or 0."""
     surfaces = _surfaces(scene, folder)
     lights = {**_emitting_surfaces(scene, surfaces), "sky": {"type": "constant"}}
-    quick = Job(job.size, 1, 0)
+    quick = Job(job.size, MASK_SAMPLES, 0)
     image = _render({**surfaces, **lights}, camera, quick, max_depth=1)
-    return np.asarray(image.max(axis=2) == 0.0, dtype=np.float32)
+    dark = image.max(axis=2, keepdims=True) == 0.0
+    return np.repeat(dark, 3, axis=2).astype(np.float32)
 
 
 def _render(entries: Entry, camera: Camera, job: Job, max_depth: int) -> FloatArray:
@@ -66,7 +71,7 @@ def _render(entries: Entry, camera: Camera, job: Job, max_depth: int) -> FloatAr
         "integrator": integrator,
         "sensor": _sensor(camera, job),
     }
-    image = np.array(mi.render(mi.load_dict(whole)), dtype=np.float32)
+    image = np.array(mi.render(mi.load_dict(whole), seed=job.seed), dtype=np.float32)
     return np.asarray(image[..., :3])
 
 
