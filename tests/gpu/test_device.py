@@ -50,12 +50,13 @@ def test_reload_takes_a_good_edit_and_survives_a_bad_one(device: Device, sources
     shader = sources.compute("values[0] = brightness();", f'#include "{lib}"\n{VALUES}')
     assert (_value(device, shader), _value(device, other)) == (1, 5)
     assert device.reload_changed_shaders() == []
-    unchanged = device.program(other)
+    unchanged, replaced = device.program(other), device.program(shader)
 
     _touch(lib, "float brightness() { return 2.0; }\n")
     assert device.reload_changed_shaders() == []
     assert _value(device, shader) == 2
     assert device.program(other) is unchanged
+    assert type(replaced.mgl.mglo).__name__ == "InvalidObject"  # released
 
     _touch(lib, "\nfloat brightness() { return oops; }\n")
     (error,) = device.reload_changed_shaders()

@@ -154,13 +154,15 @@ def test_several_targets_with_their_own_clears_and_blending(
     graph = device.begin_frame()
     a, b = (graph.texture(name, (4, 4), RGBA16F) for name in "ab")
     ids = graph.texture("ids", (4, 4), R32UI)
-    graph.raster(shader, color=[a, b, ids], state=RasterState(blend="add"))
+    before = graph.texture("before", (4, 4), RGBA16F)
+    plain = sources.full_screen("o_color = vec4(1);")
+    graph.raster(plain, color=before, state=RasterState(blend="add"))
     state = RasterState(blend=("add", None, None))
     graph.raster(
         shader, color=[a, b, ids], state=state, viewport=(0, 0, 2, 4),
         clear_color=[(1, 1, 1, 1), (0.5, 0, 0, 0), (3, 0, 0, 0)],
     )  # fmt: skip
-    for handle in (a, b, ids):
+    for handle in (before, a, b, ids):
         graph.keep(handle)
     graph.execute()
     assert a.physical
@@ -242,6 +244,10 @@ def test_depth_is_tested_written_and_sampled(device: Device, sources: Sources, f
     graph = device.begin_frame()
     color = graph.texture("color", (4, 4), R32F)
     depth = graph.texture("depth", (4, 4), fmt)
+    with pytest.raises(GraphError, match="u_depth: depth is sampled with compare"):
+        graph.raster(show, color=color, reads={"u_depth": Sampled(depth, compare=True)})
+    with pytest.raises(GraphError, match="u_shadow: depth is sampled without compare"):
+        graph.raster(show, color=color, reads={"u_shadow": Sampled(depth)})
     shown = graph.texture("shown", (4, 4), RGBA16F)
     state = RasterState(depth_test="less")
     left = (0, 0, 2, 4)
