@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from elemental.core.layout import layouts, pack
+from elemental.gpu import gl as c
 from elemental.gpu.binding import GraphError
 from elemental.gpu.device import Device
 from elemental.gpu.formats import R32F, R32UI, RGBA8, RGBA16F, RGBA32F
@@ -359,3 +360,20 @@ def test_bare_float32_images_filter(device: Device, double: Raster) -> None:
     assert target.physical
     assert target.physical.read()[0, :, 0].tolist() == [0, 0.5, 1.5, 2]
     image.release()
+
+
+def test_objects_carry_the_names_of_resources_and_passes(device: Device, fill: Compute) -> None:
+    """What a capture shows reads like the source, also where a pooled target is reused."""
+    label = device.ctx.mglo.get_label
+    for name in ("albedo", "normal"):
+        graph = device.begin_frame()
+        image = graph.texture(name, (24, 24), RGBA16F)
+        graph.compute(fill, writes={"o_image": image}, threads=(24, 24))
+        graph.keep(image)
+        graph.execute()
+        assert image.physical
+        assert label(c.LABEL_TEXTURE, image.physical.glo) == name
+    nodes = device.buffer("octree.nodes", 16)
+    assert nodes.mgl.label == "octree.nodes"
+    assert label(c.LABEL_PROGRAM, device.program(fill).mgl.glo) == repr(fill)
+    nodes.release()
