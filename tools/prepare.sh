@@ -18,6 +18,7 @@ missing_packages() {
     has_library libEGL.so.1 || echo libegl1
     has_library libGL.so.1 || echo libgl1 # brings Mesa's drivers
     if [ "$1" = test ]; then
+        has_library libatomic.so.1 || echo libatomic1 # mitsuba links it
         command -v Xvfb >/dev/null || echo xvfb
         command -v xdotool >/dev/null || echo xdotool
         command -v glslangValidator >/dev/null || echo glslang-tools
@@ -43,7 +44,7 @@ install_system_packages() {
     say "installing $missing"
     export DEBIAN_FRONTEND=noninteractive
     # shellcheck disable=SC2086 # the list is meant to split
-    { apt-get update -qq && apt-get install -y -qq --no-install-recommends $missing; } >&2 || {
+    { apt-get update -qq && apt-get install -y -qq --no-install-recommends $missing; } >/dev/null || {
         say "failed: $command"
         exit 1
     }
