@@ -13,7 +13,11 @@ struct Light {
     float spot_scale;     // 1 / (cos inner - cos outer)
     float spot_offset;    // -cos outer * spot_scale
     int shadow_view;      // first entry in ShadowViews, or -1: casts no shadow
-    uint cascade_count;   // of a directional light
+    uint first_cascade;   // of a directional light: entries in ShadowViews, the finest first
+    uint cascade_count;
+    float reserved0;
+    float reserved1;
+    float reserved2;
 };
 
 // Never empty: a scene without lights holds one of intensity 0.

@@ -25,7 +25,7 @@ def light(kind: str, **fields: object) -> Light:
 
 
 def irradiance(device: Device, source: Light, points: np.ndarray) -> np.ndarray:
-    packed: Block = pack_lights([source], [-1], [0])
+    packed: Block = pack_lights([source], [-1], [(0, 0)])
     lights = device.buffer("lights", packed)
     body = "sample_light(lights[0], p).irradiance"
     values = run_glsl(

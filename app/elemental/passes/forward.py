@@ -11,7 +11,7 @@ from elemental.gpu.graph import Graph
 from elemental.gpu.refs import Ref, TextureHandle
 from elemental.gpu.shaders import Raster
 from elemental.gpu.state import RasterState
-from elemental.passes.gbuffer import VERT, GBuffer
+from elemental.passes.gbuffer import VERT, VIEWER, GBuffer
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.scene_pack import BLEND
 from elemental.passes.shadow import ShadowMaps
@@ -44,7 +44,7 @@ def draw_translucent(
         reads["u_diffuse_gi"] = diffuse_gi
 
     def draw(enc: Encoder) -> None:
-        scene.draw(enc, scene.back_to_front(view["eye_ws"]), in_view=True)
+        scene.draw(enc, scene.back_to_front(view["eye_ws"]), seen_by=VIEWER)
 
     g.raster(
         VARIANTS[int(diffuse_gi is not None)],

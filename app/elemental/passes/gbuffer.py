@@ -21,6 +21,8 @@ from elemental.scene.model import AlphaMode
 
 VERT, FRAG = "gbuffer/gbuffer.vert.glsl", "gbuffer/gbuffer.frag.glsl"
 STATE = RasterState(cull="back", depth_test="lequal")
+VIEWER = "camera"
+"""Whom GpuScene.look culls for here."""
 CLEAR = (0.0, 0.0, 0.0, 0.0)
 
 
@@ -69,14 +71,14 @@ def draw_gbuffer(g: Graph, view: Block, scene: GpuScene, size: tuple[int, int]) 
         c=g.texture("gbuffer.c", size=size, format=RGBA8),
         d=g.texture("gbuffer.d", size=size, format=RGBA8),
     )
-    scene.look(np.asarray(view["clip_from_world"]).T)
+    scene.look(VIEWER, np.asarray(view["clip_from_world"]).T)
     groups: dict[tuple[AlphaMode, int], list[Batch]] = defaultdict(list)
     for batch in scene.batches(SOLID):
         groups[batch.alpha_mode, batch.texture_mask].append(batch)
     for number, (key, batches) in enumerate((groups or {("opaque", 0): []}).items()):
 
         def draw(enc: Encoder, batches: list[Batch] = batches, mask: int = key[1]) -> None:
-            scene.draw(enc, batches, texture_mask=mask, in_view=True)
+            scene.draw(enc, batches, texture_mask=mask, seen_by=VIEWER)
 
         g.raster(
             _shader(*key),

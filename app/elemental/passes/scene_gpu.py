@@ -60,36 +60,42 @@ class GpuScene:
         surface = (upload("surface", geometry.surface), "3f 4f 2f 2f 4f1", SURFACE_NAMES)
 
         def place(name: str) -> Placed:
-            order = upload(f"{name}.order", numbers)
+            order = upload(f"order.{name}", numbers)
             instance = (order, "1u/i", ("a_instance",))
             return Placed(
-                upload(f"{name}.draws", commands),
+                upload(f"draws.{name}", commands),
                 order,
                 device.vertex_input([position, surface, instance], indices),
                 device.vertex_input([position, instance], indices),
             )
 
-        self._all = place("all")
-        self._in_view = place("in_view")
+        self._place = place
+        self._everything = place("everything")
+        self._seen_by: dict[str, Placed] = {}
         self._culling = Culling(commands, numbers, *scene_pack.instance_boxes(scene))
         self._textures = MaterialTextures(device, scene, self._batches)
 
     def release(self) -> None:
         """Free everything."""
-        for placed in (self._all, self._in_view):
+        for placed in (self._everything, *self._seen_by.values()):
             placed.vertices.release()
             placed.positions_only.release()
         self._textures.release()
         for buffer in self._buffers:
             buffer.release()
 
-    def look(self, clip_from_world: Array) -> None:
-        """Leave out of `draw(in_view=True)` what the camera can't see."""
-        changed = self._culling.look(clip_from_world)
+    def look(self, viewer: str, clip_from_world: Array) -> None:
+        """Leave out of the draws `seen_by` this viewer what its (4, 4) matrix can't see."""
+        changed = self._culling.look(viewer, clip_from_world)
         if changed is not None:
             commands, order = changed
-            self._in_view.commands.write(commands)
-            self._in_view.order.write(order)
+            if viewer not in self._seen_by:
+                self._seen_by[viewer] = self._place(viewer)
+            self._seen_by[viewer].commands.write(commands)
+            self._seen_by[viewer].order.write(order)
+
+    def _placed(self, viewer: str | None) -> Placed:
+        return self._everything if viewer is None else self._seen_by[viewer]
 
     def batches(
         self, alpha_modes: Collection[AlphaMode], textured: bool | None = None
@@ -118,14 +124,14 @@ class GpuScene:
         *,
         texture_mask: int = ALL_SLOTS,
         cull: bool = True,
-        in_view: bool = False,
+        seen_by: str | None = None,
     ) -> None:
         """Draw batches with every attribute.
 
         `texture_mask`: the shader's MATERIAL_TEXTURES. `cull` hides the back faces of single-sided
-        materials; without it the pass's state stays. `in_view`: only what `look` last saw.
+        materials; without it the pass's state stays. `seen_by`: a viewer given to `look`.
         """
-        placed = self._in_view if in_view else self._all
+        placed = self._placed(seen_by)
         bound: dict[str, int] = {}
         for batch in batches:
             if cull:
@@ -136,9 +142,15 @@ class GpuScene:
                     bound[slot] = texture
             encoder.draw_indirect(placed.vertices, placed.commands, batch.count, batch.first)
 
-    def draw_positions(self, encoder: Encoder, alpha_modes: Collection[AlphaMode] = OPAQUE) -> None:
+    def draw_positions(
+        self,
+        encoder: Encoder,
+        alpha_modes: Collection[AlphaMode] = OPAQUE,
+        *,
+        seen_by: str | None = None,
+    ) -> None:
         """Draw with the attributes a_position and a_instance only, culling left as it is."""
-        placed = self._all
+        placed = self._placed(seen_by)
         for mode in CATEGORIES:
             batches = self.batches((mode,)) if mode in alpha_modes else []
             if batches:
@@ -157,7 +169,7 @@ class Placed:
 
 
 class Culling:
-    """Which instances a camera sees, as draw commands with fewer instances each.
+    """Which instances a viewer sees, as draw commands with fewer instances each.
 
     commands (D,) DRAW_COMMAND, order (N,) instance numbers in draw order, low and high (N, 3) world
     boxes by instance number.
@@ -168,14 +180,14 @@ class Culling:
         self._segment = np.repeat(np.arange(len(commands)), commands["instance_count"])
         self.centers = (low + high) / 2
         self._half = (high - low) / 2
-        self._looked: bytes = b""
+        self._looked: dict[str, bytes] = {}
 
-    def look(self, clip_from_world: Array) -> tuple[Array, Array] | None:
-        """(commands, order) for this camera, None if it is the one looked at last."""
+    def look(self, viewer: str, clip_from_world: Array) -> tuple[Array, Array] | None:
+        """(commands, order) by this matrix, None if the viewer's last look was by the same."""
         key = clip_from_world.tobytes()
-        if key == self._looked:
+        if key == self._looked.get(viewer):
             return None
-        self._looked = key
+        self._looked[viewer] = key
         seen = self.visible(clip_from_world)[self._order]
         commands = self._commands.copy()
         commands["instance_count"] = np.add.reduceat(seen, commands["base_instance"], dtype="<u4")

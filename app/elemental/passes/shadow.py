@@ -21,7 +21,7 @@ from elemental.gpu.shaders import Raster
 from elemental.gpu.state import RasterState
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.scene_pack import BASE_COLOR_SLOT, MASKED, Array
-from elemental.passes.shadow_plan import CASCADE, MAPS, ShadowPlan, ShadowSettings, plan_shadows
+from elemental.passes.shadow_plan import ShadowPlan, ShadowSettings, plan_shadows
 from elemental.scene.model import Camera, Light
 
 VERT, FRAG = "shadow/depth.vert.glsl", "shadow/depth.frag.glsl"
@@ -43,15 +43,15 @@ class ShadowMaps:
         self._device = device
         self.settings = settings
         self.light_key: Hashable = None
-        self._textures: dict[str, Texture] = {}
+        self._maps: Texture | None = None
         self._buffers: dict[str, Buffer] = {}
         self._uploaded: dict[str, bytes] = {}
-        self._drawn: dict[tuple[int, int], bytes] = {}
+        self._drawn: dict[int, bytes] = {}
 
     def reads(self) -> dict[str, Ref]:
         """What a shader that includes lib/shadow.glsl reads; valid after `update_shadows`."""
-        maps = {f"u_shadow_{name}": Sampled(self._textures[name], compare=True) for name in MAPS}
-        return {**self._buffers, **maps}
+        assert self._maps is not None, "update_shadows comes first"
+        return {**self._buffers, "u_shadow_maps": Sampled(self._maps, compare=True)}
 
     def params(self) -> dict[str, Block]:
         """The uniform blocks of lib/shadow.glsl: none."""
@@ -59,46 +59,45 @@ class ShadowMaps:
 
     def release(self) -> None:
         """Free the maps and the buffers."""
-        for texture in self._textures.values():
-            texture.release()
+        if self._maps is not None:
+            self._maps.release()
+            self._maps = None
         for buffer in self._buffers.values():
             buffer.release()
-        for held in (self._textures, self._buffers, self._uploaded, self._drawn):
+        for held in (self._buffers, self._uploaded, self._drawn):
             held.clear()
 
     def place(self, plan: ShadowPlan, version: int) -> list[int]:
         """Upload a plan. Returns the numbers of the views whose map has to be drawn anew."""
-        for name in MAPS:
-            self._allocate(name, plan.layers(name))
+        self._allocate(plan.layers)
         self._upload("Lights", plan.lights)
         self._upload("ShadowViews", plan.views)
-        fixed = plan.views["map"] != MAPS.index(CASCADE)
-        self.light_key = (version, plan.lights.tobytes(), plan.views[fixed].tobytes())
+        light_fields = [name for name in plan.lights.dtype.names or () if "cascade" not in name]
+        fixed = plan.views[: plan.fixed]
+        self.light_key = (version, plan.lights[light_fields].tobytes(), fixed.tobytes())
         stale = []
         for number, view in enumerate(plan.views):
-            place = (int(view["map"]), int(view["layer"]))
             content = view.tobytes() + version.to_bytes(8, "little")
-            if self._drawn.get(place) != content:
-                self._drawn[place] = content
+            if self._drawn.get(number) != content:
+                self._drawn[number] = content
                 stale.append(number)
         return stale
 
-    def target(self, view: Array) -> Layer:
-        """The depth layer of one record of ShadowView."""
-        return Layer(self._textures[MAPS[int(view["map"])]], int(view["layer"]))
+    def target(self, number: int) -> Layer:
+        """The depth layer of one view."""
+        assert self._maps is not None
+        return Layer(self._maps, number)
 
-    def _allocate(self, name: str, layers: int) -> None:
-        """An array of at least so many layers; a single texel where a light may never look."""
-        texels = self.settings.texels(name) if layers else 1
-        texture = self._textures.get(name)
-        if texture is not None:
-            if layers <= (texture.layers or 0) and texels <= texture.width:
+    def _allocate(self, layers: int) -> None:
+        """At least so many layers; a single texel where no light may look."""
+        texels = self.settings.resolution if layers else 1
+        if self._maps is not None:
+            if layers <= (self._maps.layers or 0) and texels <= self._maps.width:
                 return
-            texture.release()
-        number = MAPS.index(name)
-        self._drawn = {place: c for place, c in self._drawn.items() if place[0] != number}
-        self._textures[name] = self._device.texture(
-            f"shadow.{name}", (texels, texels), D32F, layers=max(layers, 1), category="targets"
+            self._maps.release()
+        self._drawn.clear()
+        self._maps = self._device.texture(
+            "shadow.maps", (texels, texels), D32F, layers=max(layers, 1), category="targets"
         )
 
     def _upload(self, name: str, values: Array) -> None:
@@ -127,29 +126,32 @@ def update_shadows(
     """Bring every map up to date and return `maps`, ready to be read. size: px of the picture."""
     plan = plan_shadows(lights, scene.bounds, camera, size, maps.settings)
     for number in maps.place(plan, scene.version):
-        _draw_view(g, maps, scene, plan.views[number], number)
+        _draw_view(g, maps, scene, plan, number)
     return maps
 
 
-def _draw_view(g: Graph, maps: ShadowMaps, scene: GpuScene, view: Array, number: int) -> None:
-    shader_inputs = maps.reads()
-    params = {"ShadowPass": pack(layouts().block("ShadowPass"), view=np.uint32(number))}
-    name = f"shadow.{MAPS[int(view['map'])]}.{int(view['layer'])}"
+def _draw_view(g: Graph, maps: ShadowMaps, scene: GpuScene, plan: ShadowPlan, number: int) -> None:
+    name = f"shadow.{plan.names[number]}"
+    viewer = f"shadow.{number}"
+    scene.look(viewer, plan.views[number]["clip_from_world"].T)
 
     def draw_opaque(enc: Encoder) -> None:
-        scene.draw_positions(enc)
+        scene.draw_positions(enc, seen_by=viewer)
 
     def draw_masked(enc: Encoder) -> None:
-        scene.draw(enc, scene.batches(MASKED), texture_mask=BASE_COLOR_SLOT, cull=False)
+        masked = scene.batches(MASKED)
+        scene.draw(enc, masked, texture_mask=BASE_COLOR_SLOT, cull=False, seen_by=viewer)
 
-    reads = {"Instances": scene.instances, "ShadowViews": shader_inputs["ShadowViews"]}
+    reads = {"Instances": scene.instances, "ShadowViews": maps.reads()["ShadowViews"]}
+    params = {"ShadowPass": pack(layouts().block("ShadowPass"), view=np.uint32(number))}
+    target = maps.target(number)
     g.raster(
-        DEPTH, name, depth=maps.target(view), reads=reads, params=params, state=STATE,
-        clear_depth=1.0, draw=draw_opaque,
+        DEPTH, name, depth=target, reads=reads, params=params, state=STATE, clear_depth=1.0,
+        draw=draw_opaque,
     )  # fmt: skip
     if scene.batches(MASKED):
+        reads["Materials"] = scene.materials
         g.raster(
-            DEPTH_MASKED, f"{name}.masked", depth=maps.target(view),
-            reads={**reads, "Materials": scene.materials}, params=params, state=STATE,
+            DEPTH_MASKED, f"{name}.masked", depth=target, reads=reads, params=params, state=STATE,
             draw=draw_masked,
         )  # fmt: skip

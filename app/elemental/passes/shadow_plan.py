@@ -15,40 +15,33 @@ from elemental.passes.scene_pack import Array
 from elemental.passes.shadow_fit import Bounds, FittedView, ViewFrustum
 from elemental.scene.model import Camera, Light
 
-CASCADE, SCENE, LOCAL = "cascades", "scene", "local"
-MAPS = (CASCADE, SCENE, LOCAL)
-"""Texture arrays, in the order of SHADOW_MAP_*."""
 KINDS = ("directional", "point", "spot")
 """In the order of LIGHT_*."""
-LARGEST_MAP = 4096
 CONE_MARGIN = 1e-3
 """Least difference of a spot's cone cosines, as KHR_lights_punctual recommends."""
 
 
 @dataclass(frozen=True)
 class ShadowSettings:
-    """resolution: texels a side of a cascade and of a local map; the scene map has twice as many.
-    cascades: of a directional light; reach: how far they go in m, 0 = the scene's diagonal."""
+    """resolution: texels a side of each map; cascades: most of them for a directional light;
+    reach: how far they go from the camera in m, 0 = the scene's diagonal."""
 
     resolution: int = 1024
     cascades: int = 3
     reach: float = 0.0
 
-    def texels(self, map_name: str) -> int:
-        """Texels a side of the maps in one array."""
-        return min(self.resolution * (2 if map_name == SCENE else 1), LARGEST_MAP)
-
 
 @dataclass(frozen=True)
 class ShadowPlan:
-    """lights (L,) of the struct Light, never empty; views (V,) of the struct ShadowView."""
+    """lights (L,) of the struct Light, never empty; views (V,) of the struct ShadowView, the
+    cascades behind the `fixed` ones, which do not depend on the camera; names by view; `layers`
+    that no camera exceeds."""
 
     lights: Array
     views: Array
-
-    def layers(self, map_name: str) -> int:
-        """Views that one texture array holds."""
-        return int(np.count_nonzero(self.views["map"] == MAPS.index(map_name)))
+    names: list[str]
+    fixed: int
+    layers: int
 
 
 def plan_shadows(
@@ -60,38 +53,53 @@ def plan_shadows(
 ) -> ShadowPlan:
     """The views of every light that casts shadows. size: (width, height) px of the picture."""
     frustum = _frustum(camera, size, bounds)
-    diagonal = float(np.linalg.norm(bounds[1] - bounds[0]))
-    fitted: list[tuple[str, FittedView]] = []
-    first_view, cascade_counts = [], []
-    for light in lights:
-        views = _views(light, bounds, frustum, settings, settings.reach or diagonal)
-        first_view.append(len(fitted) if views else -1)
-        cascade_counts.append(sum(name == CASCADE for name, _ in views))
-        fitted += views
-    return ShadowPlan(pack_lights(lights, first_view, cascade_counts), _pack_views(fitted))
+    views: dict[str, FittedView] = {}
+    first_view = []
+    for number, light in enumerate(lights):
+        fitted = _fixed_views(light, bounds, settings.resolution) if light.casts_shadow else []
+        first_view.append(len(views) if fitted else -1)
+        views |= {f"{number}.{light.kind}.{k}": view for k, view in enumerate(fitted)}
+    fixed = len(views)
+    cascades = []
+    for number, light in enumerate(lights):
+        first = len(views)
+        if light.kind == "directional" and light.casts_shadow:
+            whole = views[f"{number}.directional.0"]
+            fitted = _cascades(light, bounds, frustum, settings, whole.texel)
+            views |= {f"{number}.cascade.{k}": view for k, view in enumerate(fitted)}
+        cascades.append((first, len(views) - first))
+    suns = sum(light.kind == "directional" and light.casts_shadow for light in lights)
+    return ShadowPlan(
+        lights=pack_lights(lights, first_view, cascades),
+        views=_pack_views(list(views.values())),
+        names=list(views),
+        fixed=fixed,
+        layers=fixed + suns * settings.cascades,
+    )
 
 
-def _views(
-    light: Light, bounds: Bounds, frustum: ViewFrustum, settings: ShadowSettings, reach: float
-) -> list[tuple[str, FittedView]]:
-    if not light.casts_shadow:
-        return []
-    local = settings.texels(LOCAL)
+def _fixed_views(light: Light, bounds: Bounds, resolution: int) -> list[FittedView]:
+    if light.kind == "directional":
+        return [shadow_fit.scene_view(light, bounds, resolution)]
     if light.kind == "spot":
-        return [(LOCAL, shadow_fit.spot_view(light, bounds, local))]
-    if light.kind == "point":
-        return [(LOCAL, view) for view in shadow_fit.point_views(light, bounds, local)]
-    whole = shadow_fit.scene_view(light, bounds, settings.texels(SCENE))
-    cascades = shadow_fit.cascade_views(
+        return [shadow_fit.spot_view(light, bounds, resolution)]
+    return shadow_fit.point_views(light, bounds, resolution)
+
+
+def _cascades(
+    light: Light, bounds: Bounds, frustum: ViewFrustum, settings: ShadowSettings, coarsest: float
+) -> list[FittedView]:
+    """Those with smaller texels than `coarsest`, the whole scene's: others show no more."""
+    diagonal = float(np.linalg.norm(bounds[1] - bounds[0]))
+    views = shadow_fit.cascade_views(
         light,
         bounds,
         frustum,
         count=settings.cascades,
-        reach=reach,
-        resolution=settings.texels(CASCADE),
+        reach=settings.reach or diagonal,
+        resolution=settings.resolution,
     )
-    # A cascade no finer than the map of the whole scene would show the same.
-    return [(SCENE, whole), *((CASCADE, view) for view in cascades if view.texel < whole.texel)]
+    return [view for view in views if view.texel < coarsest]
 
 
 def _frustum(camera: Camera, size: tuple[int, int], bounds: Bounds) -> ViewFrustum:
@@ -106,31 +114,27 @@ def _frustum(camera: Camera, size: tuple[int, int], bounds: Bounds) -> ViewFrust
     )
 
 
-def _pack_views(fitted: Sequence[tuple[str, FittedView]]) -> Array:
-    counts = dict.fromkeys(MAPS, 0)
-    layers = []
-    for name, _ in fitted:
-        layers.append(counts[name])
-        counts[name] += 1
+def _pack_views(fitted: Sequence[FittedView]) -> Array:
     return pack_array(
         layouts().struct("ShadowView"),
         len(fitted),
-        clip_from_world=np.array([view.clip_from_world for _, view in fitted]).reshape(-1, 4, 4),
-        texel=[view.texel for _, view in fitted],
+        clip_from_world=np.array([view.clip_from_world for view in fitted]).reshape(-1, 4, 4),
+        texel=[view.texel for view in fitted],
         depth_bias=[shadow_fit.DEPTH_BIAS] * len(fitted),
-        map=[MAPS.index(name) for name, _ in fitted],
-        layer=layers,
     )
 
 
 def pack_lights(
-    lights: Sequence[Light], first_view: Sequence[int], cascade_counts: Sequence[int]
+    lights: Sequence[Light], first_view: Sequence[int], cascades: Sequence[tuple[int, int]]
 ) -> Array:
-    """(lights,) of the GLSL struct Light; one of intensity 0 where there is none."""
+    """(lights,) of the GLSL struct Light; one of intensity 0 where there is none.
+
+    first_view: -1 without a shadow; cascades: (first view, count).
+    """
     if not lights:
         zero, down = np.zeros(3, np.float32), np.array([0.0, -1.0, 0.0], np.float32)
         dark = Light("none", "directional", zero, 0.0, zero, down, casts_shadow=False)
-        lights, first_view, cascade_counts = [dark], [-1], [0]
+        lights, first_view, cascades = [dark], [-1], [(0, 0)]
     cosines = np.cos([(light.inner_angle, light.outer_angle) for light in lights])
     spot_scale = 1.0 / np.maximum(cosines[:, 0] - cosines[:, 1], CONE_MARGIN)
     return pack_array(
@@ -145,5 +149,6 @@ def pack_lights(
         spot_scale=spot_scale,
         spot_offset=-cosines[:, 1] * spot_scale,
         shadow_view=first_view,
-        cascade_count=cascade_counts,
+        first_cascade=[first for first, _ in cascades],
+        cascade_count=[count for _, count in cascades],
     )
