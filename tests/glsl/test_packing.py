@@ -77,11 +77,12 @@ def test_octahedral_map_round_trips_and_folds_onto_the_sphere(device: Device) ->
     np.testing.assert_allclose(back, n, atol=2e-6)
     rng = np.random.default_rng(8)
     inside = rng.uniform(-0.99, 0.99, (500, 2))
-    # Past an edge, the square goes on as its own mirror image about the middle of that edge.
-    beyond = np.stack([2.0 - inside[:, 0], -inside[:, 1]], axis=1)
-    folded = run_glsl(device, PACKING, "octahedral_fold(p)", {"p": beyond}, "vec2")
-    expected = np.where((beyond[:, :1] > 1.0), inside, beyond)
-    np.testing.assert_allclose(folded, expected, atol=1e-6)
+    # Past an edge, the square goes on as its own image turned about the middle of that edge.
+    over_x = np.stack([np.copysign(2.0, inside[:, 0]) - inside[:, 0], -inside[:, 1]], axis=1)
+    over_y = np.stack([-inside[:, 0], np.copysign(2.0, inside[:, 1]) - inside[:, 1]], axis=1)
+    for beyond in (over_x, over_y, inside):
+        folded = run_glsl(device, PACKING, "octahedral_fold(p)", {"p": beyond}, "vec2")
+        np.testing.assert_allclose(folded, inside, atol=1e-6)
     edge = rng.uniform(-1, 1, 200)
     both = [np.stack([np.ones(200), sign * edge], axis=1) for sign in (1, -1)]
     a, b = (run_glsl(device, PACKING, "octahedral_decode(p)", {"p": p}, "vec3") for p in both)

@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 
 from elemental.gpu.formats import D24S8, RGB10_A2, RGBA8, RGBA16F
+from elemental.passes.scene_gpu import Culling
 from elemental.scene.model import Texture, TextureSlot
 from gpu.rig import IDENTITY, MakeRig, Rig, at, camera, material, mesh, read, scene, vector
 from shapes import box, quad, sphere
 
 ABOVE = camera(vector(0, 3, 0), vector(0, 0, 0))
 CENTER = (32, 48)
+HALF_ROUGH_CODE = (np.log2(2 / (128 / 255) ** 4 - 2) + 1) / 19 * 255
 
 
 def channels(rig: Rig) -> dict[str, np.ndarray]:
@@ -88,6 +90,7 @@ def test_normals_follow_a_scaled_and_turned_instance(rig: MakeRig) -> None:
     [
         ("base_color_texture", (128, 255, 0, 255), "c", np.sqrt([0.2159, 1, 0]) * 255),
         ("metallic_roughness_texture", (0, 128, 255, 255), "c", [0, 0, 0]),
+        ("metallic_roughness_texture", (0, 128, 255, 255), "d", [HALF_ROUGH_CODE]),
         ("occlusion_texture", (64, 0, 0, 255), "b", [51, 51, 51, 64]),
         ("emissive_texture", (128, 255, 0, 255), "scene_color", [0.2159, 1, 0]),
     ],
@@ -121,10 +124,10 @@ def test_a_normal_map_bends_along_tangent_and_bitangent(rig: MakeRig) -> None:
 def test_texture_transforms_choose_the_texel(rig: MakeRig) -> None:
     pixels = np.zeros((2, 2, 4), np.uint8)
     pixels[..., 3] = 255
-    pixels[1, 0] = (255, 255, 255, 255)  # u 0..0.5, v 0.5..1
+    pixels[1, 1] = (255, 255, 255, 255)  # u and v in 0.5..1
     image = Texture("t", pixels, nearest=True)
     plane = mesh(quad(), uv=np.zeros((6, 2), np.float32))
-    matrix = np.array([[1, 0, 0.25], [0, 1, 0.75]], np.float32)
+    matrix = np.array([[1, 0, 0.75], [0, 1, 0.75]], np.float32)
     surface = material(base_color_texture=TextureSlot(0, 1, matrix))
     world = scene((plane, IDENTITY), materials=[surface], textures=[image])
     np.testing.assert_array_equal(channels(rig(world, ABOVE))["c"][:3], 255)
@@ -182,3 +185,27 @@ def test_instances_of_many_materials_land_where_they_belong(rig: MakeRig) -> Non
         np.testing.assert_allclose(
             stored[near], np.tile(colors[owner, :3], (near.sum(), 1)), atol=6e-3
         )
+
+
+def test_culling_never_leaves_out_what_is_seen(
+    rig: MakeRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Cameras among boxes, with and without culling: the same depth to the bit."""
+    rng = np.random.default_rng(9)
+    parts = [(mesh(box((0.5, 2.5, 0.5))), at(*rng.uniform(-4, 4, 3))) for _ in range(60)]
+    world = scene(*parts)
+    for turn in range(4):
+        angle = turn * np.pi / 2 + 0.3
+        pose = camera(vector(0, 0, 0), vector(np.cos(angle), 0.2, np.sin(angle)), fov_y=0.7)
+        depths, seen = [], []
+        for everything in (False, True):
+            view = rig(world, pose)
+            if everything:
+                monkeypatch.setattr(Culling, "visible", lambda _, m: np.ones(60, bool))
+            g, block, gb = view.begin()
+            depths.append(read(g, gb.depth))
+            matrix = np.asarray(block["clip_from_world"]).T
+            seen.append(Culling.visible(view.gpu._culling, matrix).mean())
+        monkeypatch.undo()
+        np.testing.assert_array_equal(depths[0], depths[1])
+        assert seen[0] < 0.6

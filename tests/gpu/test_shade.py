@@ -142,6 +142,24 @@ def test_the_sky_is_behind_everything(rig: MakeRig) -> None:
     assert radiance[~behind][:, :3].max() == 0.0
 
 
+def test_the_sky_is_seen_where_it_is(rig: MakeRig) -> None:
+    """Each pixel behind the scene shows the image in the direction of its own ray."""
+    polar, azimuth = np.mgrid[0:64, 0:128]
+    polar, azimuth = (polar + 0.5) / 64 * np.pi, ((azimuth + 0.5) / 128 - 0.5) * 2 * np.pi
+    sine = np.sin(polar)
+    d = np.stack([sine * np.sin(azimuth), np.cos(polar), -sine * np.cos(azimuth)], axis=-1)
+    sky = Environment((1.5 + d).astype(np.float32), vector(1, 1, 1), 1.0)
+    aside = camera(vector(1, 2, 3), vector(2, 2.5, 1), fov_y=1.0)
+    view = rig(scene((mesh(quad(0.5)), IDENTITY), environment=sky), aside)
+    got = view.scene_color()[..., :3]
+    x, y = np.meshgrid((np.arange(96) + 0.5) / 48 - 1, 1 - (np.arange(64) + 0.5) / 32)
+    tangent = np.tan(0.5)
+    ray = np.stack([x * tangent * 1.5, y * tangent, -np.ones_like(x)], axis=-1)
+    ray = ray @ aside.world_from_view[:3, :3].T
+    ray /= np.linalg.norm(ray, axis=-1, keepdims=True)
+    np.testing.assert_allclose(got, 1.5 + ray, atol=0.02)
+
+
 def test_translucent_surfaces_blend_over_in_order(rig: MakeRig) -> None:
     """Two unlit panes of opacity 1/2, given near first: far, then near, over the sky."""
     panes = [
