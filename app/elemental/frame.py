@@ -159,7 +159,7 @@ class Renderer:
         split = self.settings["gi.diffuse_cones"] // CONES
         radiance = trace_diffuse(g, view, gb, octree, sky, split)
         diffuse_gi = combine_diffuse(g, view, gb, radiance, split)
-        return diffuse_gi, trace_specular(g, view, gb, octree, sky)
+        return diffuse_gi, trace_specular(g, view, gb, octree, sky, diffuse_gi)
 
     def _prepare_voxels(self, view: str) -> VoxelLighting | None:
         """The octree, counted and allocated when it is first needed."""

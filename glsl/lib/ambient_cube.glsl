@@ -12,19 +12,26 @@ uvec3 sides_seen(vec3 direction) {
     return uvec3(0u, 2u, 4u) + uvec3(greaterThan(direction, vec3(0.0)));
 }
 
-// Squared components of a unit vector sum to one.
-vec3 side_weights(vec3 direction) { return direction * direction; }
+// Squared components of a unit vector sum to one. What is below SIDE_WEIGHT_LEAST is spread over the
+// others, so that lookups of sides that hardly count can be left out.
+const float SIDE_WEIGHT_LEAST = 0.01;
 
-// Share of a leaf's radiance that a side shows. A surface with the normal n shows its radiance to
+vec3 side_weights(vec3 direction) {
+    vec3 weights = max(direction * direction - SIDE_WEIGHT_LEAST, 0.0);
+    return weights / (weights.x + weights.y + weights.z);
+}
+
+// Share of a leaf's radiance that a side shows, from the squared length of its mean normal and the
+// cosine between that and the side. A surface with the normal n shows its radiance to
 // the half space in front of it; sides can only say that with error. The side seen edge-on
 // (cosine 0) gets SIDE_EDGE_ON: 1 is right for what the front sees of it, 0 for the back.
 // sqrt(3) makes all three front sides of a diagonal normal show it whole.
 const float SIDE_EDGE_ON = 0.75;
 
-float side_visibility(vec3 normal, float cosine) {
+float side_visibility(float squared_length, float cosine) {
     float slope = sqrt(3.0) * cosine;
     float facing = clamp(slope > 0.0 ? mix(SIDE_EDGE_ON, 1.0, slope) : SIDE_EDGE_ON * (1.0 + slope), 0.0, 1.0);
     // A short average normal means that the voxel's surfaces face several ways.
-    float certainty = min(dot(normal, normal) * 4.0, 1.0);
+    float certainty = min(squared_length * 4.0, 1.0);
     return mix(1.0, facing, certainty);
 }

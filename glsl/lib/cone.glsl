@@ -5,7 +5,7 @@
 
 // Content-adaptive steps, in voxels of the cone's level: a long one after a clear sample lands at most
 // on the middle of the next surface, a short one never steps over it.
-const float CONE_STEP = 0.5;
+const float CONE_STEP = 0.75;
 const float CONE_STEP_CLEAR = 1.0;
 const float CONE_CLEAR = 0.02;         // opacity below which a sample counts as clear
 const float CONE_OPAQUE = 0.98;        // stop where this much is hidden
@@ -40,13 +40,11 @@ struct ConeSample {
 // Both levels around a fractional one with a single descent. p in finest voxels.
 ConeSample cone_sample(vec3 p, float lod, vec3 direction, vec3 inverse_direction, uvec3 sides, vec3 weights) {
     int mip = int(lod);
-    int level = u_octree.leaf_level - mip;
-    int coarse = max(level - 1, 0);
-    uint shift = uint(u_octree.leaf_level - coarse + 1);  // a cell of `coarse` is 2^shift voxels wide
+    int coarse = u_octree.leaf_level - mip - 1;
+    uint shift = uint(mip + 2);  // a cell of `coarse` is 2^shift voxels wide
     uvec3 voxel = uvec3(p);
-    uvec3 cell = voxel >> shift;
     int reached;
-    Node node = nodes[find_node(cell, coarse, reached)];
+    Node node = nodes[find_node(voxel >> shift, coarse, reached)];
     if (!node_has_brick(node)) {
         uint empty_shift = uint(u_octree.leaf_level - int(node.child) + 1);
         vec3 empty_cell = vec3(voxel >> empty_shift);
@@ -54,20 +52,21 @@ ConeSample cone_sample(vec3 p, float lod, vec3 direction, vec3 inverse_direction
         return ConeSample(vec4(0.0), exit_distance(p, inverse_direction, direction, empty_cell, size));
     }
     uint reached_shift = uint(u_octree.leaf_level - reached + 1);
-    float reached_scale = 1.0 / float(1u << reached_shift);
-    vec3 local = p * reached_scale - vec3(voxel >> reached_shift);
-    vec4 coarse_value = brick_lookup(node, local, sides, weights);
-    vec4 fine_value = vec4(0.0);
-    uvec3 child_cell = voxel >> (shift - 1u);
+    vec3 local = p / float(1u << reached_shift) - vec3(voxel >> reached_shift);
     bool dense_child = coarse < u_octree.top_level;
     if (reached < coarse || (!dense_child && node.child == 0u)) {
-        fine_value = coarse_value;  // a leaf of a coarser region stands for its finer levels too
-    } else {
-        Node child = nodes[dense_child ? dense_node(coarse + 1, child_cell) : child_node(node.child, child_cell)];
-        vec3 child_local = local * 2.0 - vec3(child_cell & 1u);
-        if (node_has_brick(child)) fine_value = brick_lookup(child, child_local, sides, weights);
+        // A leaf of a coarser region stands for its finer levels too.
+        return ConeSample(brick_lookup(node, local, sides, weights), 0.0);
     }
-    return ConeSample(mix(fine_value, coarse_value, lod - float(mip)), 0.0);
+    float share = lod - float(mip);  // of the coarse level
+    vec4 value = share > 0.0 ? share * brick_lookup(node, local, sides, weights) : vec4(0.0);
+    uvec3 child_cell = voxel >> (shift - 1u);
+    Node child = nodes[dense_child ? dense_node(coarse + 1, child_cell) : child_node(node.child, child_cell)];
+    if (node_has_brick(child)) {
+        vec3 child_local = local * 2.0 - vec3(child_cell & 1u);
+        value += (1.0 - share) * brick_lookup(child, child_local, sides, weights);
+    }
+    return ConeSample(value, 0.0);
 }
 
 // Pos: world space. ConeAngle: half the aperture in radians. Radiance, and how much is hidden.

@@ -8,6 +8,10 @@
 #ifndef MATERIAL_TEXTURES
 #define MATERIAL_TEXTURES 31
 #endif
+// 0: every slot reads the first uv set as it is.
+#ifndef MATERIAL_UV_TRANSFORMS
+#define MATERIAL_UV_TRANSFORMS 1
+#endif
 
 // Absent textures are bound to a 1x1 white one (a flat normal for u_normal_texture).
 uniform sampler2D u_base_color_texture;          // sRGB
@@ -32,18 +36,29 @@ struct Surface {
     uint lighting_model;    // LIGHTING_*
 };
 
-vec2 material_uv(uint material, uint slot, vec2 uv0, vec2 uv1) {
+// The texel of a slot at a surface point. Gradients come from the interpolated coordinates alone:
+// outside the triangle, where the quad's helpers are, llvmpipe reads 0 from buffers, and a
+// coordinate transformed there would choose far too coarse a level.
+vec4 material_texel(sampler2D image, uint material, uint slot, vec2 uv0, vec2 uv1) {
+#if MATERIAL_UV_TRANSFORMS
     bool second = (materials[material].uv_set_mask & (1u << slot)) != 0u;
-    vec3 uv = vec3(second ? uv1 : uv0, 1.0);
-    return vec2(dot(materials[material].uv_row_u[slot].xyz, uv),
-                dot(materials[material].uv_row_v[slot].xyz, uv));
+    vec3 row_u = materials[material].uv_row_u[slot].xyz;
+    vec3 row_v = materials[material].uv_row_v[slot].xyz;
+    mat2 uv_from_uv = transpose(mat2(row_u.xy, row_v.xy));
+    vec2 dx = second ? dFdx(uv1) : dFdx(uv0);
+    vec2 dy = second ? dFdy(uv1) : dFdy(uv0);
+    vec2 uv = uv_from_uv * (second ? uv1 : uv0) + vec2(row_u.z, row_v.z);
+    return textureGrad(image, uv, uv_from_uv * dx, uv_from_uv * dy);
+#else
+    return texture(image, uv0);
+#endif
 }
 
 // Only the opacity: for passes that need the alpha test and nothing else.
 float material_opacity(uint material, vec2 uv0, vec2 uv1, float vertex_alpha) {
     float opacity = materials[material].base_color.a * vertex_alpha;
 #if (MATERIAL_TEXTURES & 1) != 0
-    opacity *= texture(u_base_color_texture, material_uv(material, SLOT_BASE_COLOR, uv0, uv1)).a;
+    opacity *= material_texel(u_base_color_texture, material, SLOT_BASE_COLOR, uv0, uv1).a;
 #endif
     return opacity;
 }
@@ -59,26 +74,26 @@ Surface evaluate_material(uint material, vec2 uv0, vec2 uv1, vec4 vertex_color) 
     s.normal_ts = vec3(0.0, 0.0, 1.0);
     s.ambient_occlusion = 1.0;
 #if (MATERIAL_TEXTURES & 1) != 0
-    base_color *= texture(u_base_color_texture, material_uv(material, SLOT_BASE_COLOR, uv0, uv1));
+    base_color *= material_texel(u_base_color_texture, material, SLOT_BASE_COLOR, uv0, uv1);
 #endif
 #if (MATERIAL_TEXTURES & 2) != 0
-    vec4 mr = texture(u_metallic_roughness_texture,
-                      material_uv(material, SLOT_METALLIC_ROUGHNESS, uv0, uv1));
+    vec4 mr = material_texel(u_metallic_roughness_texture, material, SLOT_METALLIC_ROUGHNESS,
+                             uv0, uv1);
     roughness *= mr.g;
     metallic *= mr.b;
 #endif
 #if (MATERIAL_TEXTURES & 4) != 0
-    vec3 n = texture(u_normal_texture, material_uv(material, SLOT_NORMAL, uv0, uv1)).xyz;
+    vec3 n = material_texel(u_normal_texture, material, SLOT_NORMAL, uv0, uv1).xyz;
     n = (n * 255.0 - 128.0) / 127.0;  // code 128 is 0: a flat normal map stays flat
     n.xy *= materials[material].normal_scale;
     s.normal_ts = normalize(vec3(n.xy, max(n.z, 1e-3)));
 #endif
 #if (MATERIAL_TEXTURES & 8) != 0
-    float ao = texture(u_occlusion_texture, material_uv(material, SLOT_OCCLUSION, uv0, uv1)).r;
+    float ao = material_texel(u_occlusion_texture, material, SLOT_OCCLUSION, uv0, uv1).r;
     s.ambient_occlusion = 1.0 + materials[material].occlusion_strength * (ao - 1.0);
 #endif
 #if (MATERIAL_TEXTURES & 16) != 0
-    emissive *= texture(u_emissive_texture, material_uv(material, SLOT_EMISSIVE, uv0, uv1)).rgb;
+    emissive *= material_texel(u_emissive_texture, material, SLOT_EMISSIVE, uv0, uv1).rgb;
 #endif
     s.albedo = base_color.rgb * (1.0 - metallic);
     s.opacity = base_color.a;

@@ -7,13 +7,12 @@ uint sided_index(uint brick, uint voxel, uint side) {
     return (brick * BRICK_VOXELS + voxel) * BRICK_DIRECTIONS + side;
 }
 
-SidedVoxel brick_voxel(uint brick, uint voxel) {
+AxisVoxel brick_voxel(uint brick, uint voxel, uint axis) {
     if ((bricks[brick].cell & BRICK_LEAF) != 0u) {
-        return leaf_voxel(leaf_slot(brick) * BRICK_VOXELS + voxel);
+        return leaf_voxel(leaf_slot(brick) * BRICK_VOXELS + voxel, axis);
     }
-    SidedVoxel v;
-    for (uint side = 0u; side < 6u; ++side) v.side[side] = unpack_half4(sided[sided_index(brick, voxel, side)]);
-    return v;
+    uint index = sided_index(brick, voxel, axis * 2u);
+    return AxisVoxel(unpack_half4(sided[index]), unpack_half4(sided[index + 1u]));
 }
 
 const uint NO_BRICK = 0xffffffffu;
@@ -31,9 +30,14 @@ uint brick_of_cell(ivec3 cell, int level, out int reached) {
     return brick;
 }
 
+// Occupied points of a cell's brick, a bit each; all, where a coarser neighbour stands for it.
+uint points_of_cell(uint brick, int reached, int level) {
+    if (brick == NO_BRICK) return 0u;
+    return reached < level ? 0xffu : bricks[brick].node >> BRICK_POINTS_SHIFT;
+}
+
 // Voxel at a lattice point of `level` in the brick of its cell. A coarser neighbour region lends
 // the nearest point that it has.
-SidedVoxel voxel_at(uint brick, int reached, uvec3 point, int level) {
-    if (brick == NO_BRICK) return empty_voxel();
-    return brick_voxel(brick, voxel_of_point(point >> uint(level - reached)));
+AxisVoxel axis_voxel_at(uint brick, int reached, uvec3 point, int level, uint axis) {
+    return brick_voxel(brick, voxel_of_point(point >> uint(level - reached)), axis);
 }

@@ -12,9 +12,10 @@ uniform sampler3D u_brick_atlas;  // linear filter: trilinear inside a brick's 3
 vec4 brick_lookup(Node node, vec3 local, uvec3 sides, vec3 weights) {
     vec3 at = (vec3(brick_texel(node_brick(node))) + 0.5 + 2.0 * local) * u_octree.atlas_texel;
     vec3 z = at.z + vec3(sides * BRICK_SIDE) * u_octree.atlas_texel.z;
-    vec4 value = weights.x * textureLod(u_brick_atlas, vec3(at.xy, z.x), 0.0)
-               + weights.y * textureLod(u_brick_atlas, vec3(at.xy, z.y), 0.0)
-               + weights.z * textureLod(u_brick_atlas, vec3(at.xy, z.z), 0.0);
+    vec4 value = vec4(0.0);
+    if (weights.x > 0.0) value += weights.x * textureLod(u_brick_atlas, vec3(at.xy, z.x), 0.0);
+    if (weights.y > 0.0) value += weights.y * textureLod(u_brick_atlas, vec3(at.xy, z.y), 0.0);
+    if (weights.z > 0.0) value += weights.z * textureLod(u_brick_atlas, vec3(at.xy, z.z), 0.0);
     return vec4(value.rgb * node_scale(node), value.a);
 }
 

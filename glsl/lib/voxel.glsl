@@ -1,4 +1,4 @@
-// A voxel's HDR value towards each side, wherever it is kept: leaves derive theirs from radiance and
+// A voxel's HDR values along an axis, wherever they are kept: leaves derive theirs from radiance and
 // normal, the other levels keep filtered ones. [Mittring12 "Generate directionally dependent voxel"]
 
 #include "lib/lattice.glsl"
@@ -11,31 +11,26 @@ layout(std430) readonly buffer Attributes { VoxelAttributes attributes[]; };
 // Half floats: radiance premultiplied by opacity, opacity.
 layout(std430) readonly buffer Radiance { uvec2 radiance[]; };
 
-// Six sides of premultiplied radiance and opacity.
-struct SidedVoxel {
-    vec4 side[6];
+// Premultiplied radiance and opacity towards both sides along an axis.
+struct AxisVoxel {
+    vec4 plus_side;
+    vec4 minus_side;
 };
 
 vec4 unpack_half4(uvec2 code) { return vec4(unpackHalf2x16(code.x), unpackHalf2x16(code.y)); }
 uvec2 pack_half4(vec4 v) { return uvec2(packHalf2x16(v.xy), packHalf2x16(v.zw)); }
 
-SidedVoxel empty_voxel() {
-    SidedVoxel v;
-    for (int i = 0; i < 6; ++i) v.side[i] = vec4(0.0);
-    return v;
-}
+const AxisVoxel EMPTY_VOXEL = AxisVoxel(vec4(0.0), vec4(0.0));
 
-SidedVoxel leaf_voxel(uint voxel) {
+AxisVoxel leaf_voxel(uint voxel, uint axis) {
     vec4 value = unpack_half4(radiance[voxel]);
-    if (value.a == 0.0) return empty_voxel();
+    if (value.a == 0.0) return EMPTY_VOXEL;
     vec3 normal = unpackSnorm4x8(attributes[voxel].normal).xyz;
-    vec3 direction = normal * inversesqrt(max(dot(normal, normal), 1e-6));
-    SidedVoxel v;
-    for (int axis = 0; axis < 3; ++axis) {
-        v.side[axis * 2] = vec4(value.rgb * side_visibility(normal, direction[axis]), value.a);
-        v.side[axis * 2 + 1] = vec4(value.rgb * side_visibility(normal, -direction[axis]), value.a);
-    }
-    return v;
+    float squared = dot(normal, normal);
+    float along = axis == 0u ? normal.x : axis == 1u ? normal.y : normal.z;
+    float cosine = along * inversesqrt(max(squared, 1e-6));
+    return AxisVoxel(vec4(value.rgb * side_visibility(squared, cosine), value.a),
+                     vec4(value.rgb * side_visibility(squared, -cosine), value.a));
 }
 
 uint leaf_slot(uint brick) { return brick - octree_state.level_first[u_octree.coarsest_leaf]; }

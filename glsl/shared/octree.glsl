@@ -47,10 +47,13 @@ struct VoxelAttributes {
 };
 
 // Where a brick belongs. cell: 9:9:9 node coordinates, 4 bits of level, top bit: a leaf.
+// node: 24 bits of node index, 8 bits that say which of its own 2x2x2 points hold anything.
 struct Brick {
     uint cell;
     uint node;
 };
+const uint BRICK_NODE_MASK = 0x00ffffffu;
+const uint BRICK_POINTS_SHIFT = 24u;
 
 struct DispatchArgs {
     uint x;
@@ -72,8 +75,7 @@ struct OctreeState {
     DispatchArgs fragments;
     DispatchArgs bricks;               // a thread a brick
     DispatchArgs leaf_voxels;          // a thread a voxel, over bricks of the levels that may hold leaves
-    DispatchArgs level_bricks[10];     // a thread a brick of this level
-    DispatchArgs level_voxels[10];     // a thread a voxel of this level
+    DispatchArgs level_axes[10];       // a thread an axis of a voxel of this level
     uint level_first[12];              // first brick of each level; [levels] = brick_count
 };
 

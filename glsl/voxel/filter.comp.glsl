@@ -15,48 +15,65 @@ vec4 half_slab(vec4 slab) {
 
 vec4 over(vec4 front, vec4 back) { return front + (1.0 - front.a) * back; }
 
+// The brick of a cell of the next finer level. The node's own children need no descent.
+uint finer_brick(uvec3 own_cell, uint own_child, ivec3 cell, int level, out int reached) {
+    if (own_child == 0u || uvec3(cell >> 1) != own_cell) return brick_of_cell(cell, level, reached);
+    reached = level;
+    Node child = nodes[child_node(own_child, uvec3(cell))];
+    return node_has_brick(child) ? node_brick(child) : NO_BRICK;
+}
+
+// A thread an axis of a voxel: slab by slab along it, so that only two running sums are kept.
 void main() {
     uint index = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * BRICK_GROUP;
     int level = u_level.level;
-    uint first = octree_state.level_first[level];
-    uint brick = first + index / BRICK_VOXELS;
+    uint voxel = index / 3u;
+    uint axis = index - voxel * 3u;
+    uint brick = octree_state.level_first[level] + voxel / BRICK_VOXELS;
     if (brick >= octree_state.level_first[level + 1]) return;
-    if ((bricks[brick].cell & BRICK_LEAF) != 0u) return;
+    Brick place = bricks[brick];
+    if ((place.cell & BRICK_LEAF) != 0u) return;
 
-    uint octant = index % BRICK_VOXELS;
-    ivec3 point = ivec3(unpack_cell(bricks[brick].cell) * 2u + (uvec3(octant, octant >> 1, octant >> 2) & 1u));
+    uint octant = voxel % BRICK_VOXELS;
+    uvec3 own_cell = unpack_cell(place.cell);
+    uint own_child = nodes[place.node & BRICK_NODE_MASK].child;
+    ivec3 point = ivec3(own_cell * 2u + (uvec3(octant, octant >> 1, octant >> 2) & 1u));
     ivec3 centre = point * 2;  // on the finer lattice; its cells there are point - 1 and point
     int finer = level + 1;
-
     uint cell_brick[8];
     int cell_level[8];
+    uint cell_points[8];
     for (int i = 0; i < 8; ++i) {
         ivec3 cell = point - 1 + (ivec3(i, i >> 1, i >> 2) & 1);
-        cell_brick[i] = brick_of_cell(cell, finer, cell_level[i]);
+        cell_brick[i] = finer_brick(own_cell, own_child, cell, finer, cell_level[i]);
+        cell_points[i] = points_of_cell(cell_brick[i], cell_level[i], finer);
     }
 
-    // [axis][slab][side of the axis]
-    vec4 slabs[18];
-    for (int i = 0; i < 18; ++i) slabs[i] = vec4(0.0);
-    for (int i = 0; i < 27; ++i) {
-        ivec3 offset = ivec3(i % 3, (i / 3) % 3, i / 9) - 1;
-        ivec3 in_cell = ivec3(greaterThanEqual(offset, ivec3(0)));
-        int cell = in_cell.x | (in_cell.y << 1) | (in_cell.z << 2);
-        if (cell_brick[cell] == NO_BRICK) continue;
-        SidedVoxel v = voxel_at(cell_brick[cell], cell_level[cell], uvec3(centre + offset), finer);
-        vec3 weight = vec3(0.5) - 0.25 * vec3(abs(offset));
-        vec3 across = weight.yzx * weight.zxy;
-        for (int axis = 0; axis < 3; ++axis) {
-            int slab = axis * 6 + (offset[axis] + 1) * 2;
-            slabs[slab] += across[axis] * v.side[axis * 2];
-            slabs[slab + 1] += across[axis] * v.side[axis * 2 + 1];
+    vec4 plus_side = vec4(0.0);   // composited towards a viewer on the + side
+    vec4 minus_side = vec4(0.0);
+    for (int along = -1; along <= 1; ++along) {
+        vec4 plus_slab = vec4(0.0);
+        vec4 minus_slab = vec4(0.0);
+        for (int i = 0; i < 9; ++i) {
+            ivec2 across = ivec2(i % 3, i / 3) - 1;
+            ivec3 offset = axis == 0u ? ivec3(along, across) : axis == 1u ? ivec3(across.y, along, across.x)
+                                                             : ivec3(across, along);
+            ivec3 in_cell = ivec3(greaterThanEqual(offset, ivec3(0)));
+            int cell = in_cell.x | (in_cell.y << 1) | (in_cell.z << 2);
+            uint bit = voxel_of_point(uvec3(offset));
+            if ((cell_points[cell] & (1u << bit)) == 0u) continue;
+            AxisVoxel v = axis_voxel_at(cell_brick[cell], cell_level[cell], uvec3(centre + offset), finer, axis);
+            vec2 weight = vec2(0.5) - 0.25 * vec2(abs(across));
+            plus_slab += weight.x * weight.y * v.plus_side;
+            minus_slab += weight.x * weight.y * v.minus_side;
         }
+        if (along != 0) {
+            plus_slab = half_slab(plus_slab);
+            minus_slab = half_slab(minus_slab);
+        }
+        plus_side = over(plus_slab, plus_side);
+        minus_side = over(minus_side, minus_slab);
     }
-    for (uint axis = 0u; axis < 3u; ++axis) {
-        uint s = axis * 6u;
-        vec4 plus_side = over(half_slab(slabs[s + 4u]), over(slabs[s + 2u], half_slab(slabs[s])));
-        vec4 minus_side = over(half_slab(slabs[s + 1u]), over(slabs[s + 3u], half_slab(slabs[s + 5u])));
-        sided[sided_index(brick, octant, axis * 2u)] = pack_half4(plus_side);
-        sided[sided_index(brick, octant, axis * 2u + 1u)] = pack_half4(minus_side);
-    }
+    sided[sided_index(brick, octant, axis * 2u)] = pack_half4(plus_side);
+    sided[sided_index(brick, octant, axis * 2u + 1u)] = pack_half4(minus_side);
 }

@@ -8,6 +8,7 @@
 layout(local_size_x = 64) in;
 
 layout(std430) readonly buffer NodeBits { uint node_words[]; };
+layout(std430) readonly buffer Points { uint point_words[]; };
 layout(std430) readonly buffer State { OctreeState octree_state; };
 layout(std430) writeonly buffer Nodes { Node nodes[]; };
 layout(std430) writeonly buffer Bricks { Brick bricks[]; };
@@ -45,6 +46,14 @@ int empty_level(int level, uvec3 cell) {
     return level;
 }
 
+// Which of a node's own eight points are occupied, as a byte.
+uint own_points(int level, uvec3 cell) {
+    uvec3 first_point = cell * 2u;
+    if (!in_grid(level + 1, ivec3(first_point))) return 0u;
+    uint code = grid_code(level + 1, first_point);
+    return (point_words[cell_word(level + 1, code)] >> (code & 31u)) & 0xffu;
+}
+
 void write_node(uint index, int level, uvec3 cell, bool exists, uint brick) {
     Node node = Node(0u, 0u);
     if (exists && brick < octree_state.brick_count) {
@@ -52,7 +61,8 @@ void write_node(uint index, int level, uvec3 cell, bool exists, uint brick) {
         uint byte = child_byte(level, cell, block, byte_start);
         node.child = tile_of_children(level, byte, block, byte_start);
         node.brick = brick + 1u;
-        bricks[brick] = Brick(pack_cell(cell, level, byte == 0u), index);
+        uint place = index | (own_points(level, cell) << BRICK_POINTS_SHIFT);
+        bricks[brick] = Brick(pack_cell(cell, level, byte == 0u), place);
     } else {
         node.child = uint(empty_level(level, cell));
     }

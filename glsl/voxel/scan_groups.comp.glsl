@@ -73,7 +73,6 @@ void main() {
     }
     for (int level = 0; level < levels; ++level) {
         uint count = octree_state.level_first[level + 1] - octree_state.level_first[level];
-        octree_state.level_bricks[level] = dispatch_args(count, BRICK_GROUP);
-        octree_state.level_voxels[level] = dispatch_args(count * BRICK_VOXELS, BRICK_GROUP);
+        octree_state.level_axes[level] = dispatch_args(count * BRICK_VOXELS * 3u, BRICK_GROUP);
     }
 }

@@ -14,10 +14,13 @@ from elemental.passes.voxel.octree import Octree
 TRACE = Compute("cone_trace/specular.comp.glsl")
 
 
-def trace_specular(g: Graph, view: Block, gb: GBuffer, octree: Octree, sky: Sky) -> TextureHandle:
+def trace_specular(
+    g: Graph, view: Block, gb: GBuffer, octree: Octree, sky: Sky, diffuse_gi: TextureHandle
+) -> TextureHandle:
     """Radiance along the mirrored eye vector, (H, W) RGBA16F; a: visibility of the sky.
 
-    The cone is as wide as the surface's specular lobe.
+    The cone is as wide as the surface's specular lobe; a broad lobe on a dim surface takes what the
+    diffuse cones gathered.
     """
     specular = g.texture("specular_gi", like=gb.depth, format=RGBA16F)
     g.compute(
@@ -28,6 +31,7 @@ def trace_specular(g: Graph, view: Block, gb: GBuffer, octree: Octree, sky: Sky)
             "u_gbuffer_a": gb.a,
             "u_gbuffer_b": gb.b,
             "u_gbuffer_d": gb.d,
+            "u_diffuse_gi": diffuse_gi,
             **octree.tracing_reads(),
             **sky.reads(),
         },

@@ -13,7 +13,7 @@ import numpy as np
 
 from elemental.core.layout import Block, layouts, pack
 from elemental.gpu.graph import Graph
-from elemental.gpu.refs import AnyBuffer
+from elemental.gpu.refs import AnyBuffer, Ref
 from elemental.gpu.shaders import Compute
 from elemental.passes.voxel.octree import Octree, Survey
 
@@ -45,12 +45,10 @@ def state_offset(field: str, element: int = 0) -> int:
     return int(offset) + element * int(stride)
 
 
-def find_nodes(
-    g: Graph, octree: Survey, fragments: AnyBuffer
-) -> tuple[AnyBuffer, AnyBuffer, AnyBuffer]:
-    """Which nodes exist, and their ranks. Leaves the totals and dispatch arguments in the state.
+def find_nodes(g: Graph, octree: Survey, fragments: AnyBuffer) -> dict[str, Ref]:
+    """Which points are occupied, which nodes exist, and the nodes' ranks, by GLSL name.
 
-    Returns (existence bits, ranks inside groups of blocks, ranks of the groups).
+    Leaves the totals and the arguments of later dispatches in the octree's state.
     """
     grid = octree.grid
     points = g.buffer("voxel.points", grid.point_block_count * BLOCK_BYTES)
@@ -91,15 +89,15 @@ def find_nodes(
         params=octree.params,
         groups=1,
     )
-    return node_bits, ranks, sums
+    return {"Points": points, "NodeBits": node_bits, "Ranks": ranks, "GroupSums": sums}
 
 
 def build(g: Graph, octree: Octree, fragments: AnyBuffer) -> None:
     """Nodes, bricks and leaf attributes from the fragments."""
-    node_bits, ranks, sums = find_nodes(g, octree, fragments)
+    found = find_nodes(g, octree, fragments)
     g.compute(
         NODES,
-        reads={"NodeBits": node_bits, "Ranks": ranks, "GroupSums": sums, "State": octree.state},
+        reads={**found, "State": octree.state},
         writes={"Nodes": octree.nodes, "Bricks": octree.bricks},
         params=octree.params,
         threads=octree.grid.block_count,

@@ -53,12 +53,13 @@ def filter_levels(g: Graph, octree: Octree) -> None:
             reads={**octree.voxel_reads(), "Nodes": octree.nodes},
             writes={"Sided": octree.sided},
             params={**octree.params, "OctreeLevel": level_params(level)},
-            indirect=(octree.state, state_offset("level_voxels", level)),
+            indirect=(octree.state, state_offset("level_axes", level)),
         )
 
 
 def compress(g: Graph, octree: Octree) -> None:
     """Every brick's texels with the redundant border, and its HDR multiplier."""
+    g.clear_texture(octree.atlas)
     g.compute(
         COMPRESS,
         reads=octree.voxel_reads(),

@@ -75,7 +75,7 @@ def count(device: Device, scene: GpuScene, grid: Grid, area_m2: float) -> Counts
 def capacity_for(counts: Counts, budget_bytes: int) -> Capacity:
     """Pools for these counts; fewer leaves where the budget or the atlas can't hold them all."""
     wanted = Capacity(
-        fragments=min(counts.fragments + counts.fragments_dropped, FRAGMENTS_MAX),
+        fragments=min(max(counts.fragments + counts.fragments_dropped, 1), FRAGMENTS_MAX),
         tiles=max(counts.tiles + counts.tiles_dropped, 1),
         bricks=max(counts.bricks + counts.bricks_dropped, 1),
         leaves=max(counts.leaves + counts.bricks_dropped, 1),
