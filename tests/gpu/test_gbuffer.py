@@ -209,3 +209,27 @@ def test_culling_never_leaves_out_what_is_seen(
         monkeypatch.undo()
         np.testing.assert_array_equal(depths[0], depths[1])
         assert seen[0] < 0.6
+
+
+@pytest.mark.parametrize("uv_set", [0, 1])
+def test_fine_triangles_take_the_same_mip_level_as_coarse_ones(rig: MakeRig, uv_set: int) -> None:
+    """Every pixel quad of a fine mesh straddles triangles; its helpers must not spoil the level."""
+    checks = np.indices((64, 64)).sum(axis=0) % 2 * 255
+    pixels = np.full((64, 64, 4), 255, np.uint8)
+    pixels[..., :3] = checks[..., None]
+    surface = material(base_color_texture=TextureSlot(0, uv_set))
+    shown = []
+    for cells in (1, 60):
+        x, z = np.meshgrid(*[np.linspace(-1, 1, cells + 1)] * 2)
+        points = np.stack([x.ravel(), 0 * x.ravel(), z.ravel()], axis=-1).astype(np.float32)
+        corner = (np.arange(cells)[:, None] * (cells + 1) + np.arange(cells)).ravel()[:, None]
+        faces = corner + np.array([0, cells + 1, cells + 2, 0, cells + 2, 1])
+        plane = mesh((points, faces.astype(np.uint32).ravel()))
+        plane.uv0 = (plane.positions[:, [0, 2]] + 1) * 0.2
+        plane.uv1 = plane.uv0
+        image = Texture("t", pixels)
+        view = rig(scene((plane, IDENTITY), materials=[surface], textures=[image]), ABOVE)
+        g, _, gb = view.begin()
+        shown.append(read(g, gb.c)[..., 0].astype(int))
+    assert np.ptp(shown[0]) > 200
+    assert np.mean(np.abs(shown[0] - shown[1]) > 40) < 0.01

@@ -27,8 +27,8 @@ CLEAR = (0.0, 0.0, 0.0, 0.0)
 
 
 @cache
-def _shader(alpha_mode: AlphaMode, texture_mask: int) -> Raster:
-    defines = {"MATERIAL_TEXTURES": texture_mask}
+def _shader(alpha_mode: AlphaMode, texture_mask: int, uv_transforms: bool) -> Raster:
+    defines = {"MATERIAL_TEXTURES": texture_mask, "MATERIAL_UV_TRANSFORMS": int(uv_transforms)}
     if alpha_mode == "mask":
         defines["ALPHA_MASK"] = 1
     return Raster(VERT, FRAG, defines=defines)
@@ -72,17 +72,17 @@ def draw_gbuffer(g: Graph, view: Block, scene: GpuScene, size: tuple[int, int]) 
         d=g.texture("gbuffer.d", size=size, format=RGBA8),
     )
     scene.look(VIEWER, np.asarray(view["clip_from_world"]).T)
-    groups: dict[tuple[AlphaMode, int], list[Batch]] = defaultdict(list)
+    groups: dict[tuple[AlphaMode, int, bool], list[Batch]] = defaultdict(list)
     for batch in scene.batches(SOLID):
-        groups[batch.alpha_mode, batch.texture_mask].append(batch)
-    for number, (key, batches) in enumerate((groups or {("opaque", 0): []}).items()):
+        groups[batch.alpha_mode, batch.texture_mask, batch.uv_transforms].append(batch)
+    for number, (key, batches) in enumerate((groups or {("opaque", 0, False): []}).items()):
 
         def draw(enc: Encoder, batches: list[Batch] = batches, mask: int = key[1]) -> None:
             scene.draw(enc, batches, texture_mask=mask, seen_by=VIEWER)
 
         g.raster(
             _shader(*key),
-            name=f"gbuffer.{key[0]}.{key[1]}",
+            name=f"gbuffer.{key[0]}.{key[1]}{'.uv' if key[2] else ''}",
             color=[gb.scene_color, gb.a, gb.b, gb.c, gb.d],
             depth=gb.depth,
             reads={"Instances": scene.instances, "Materials": scene.materials},

@@ -79,6 +79,8 @@ class Batch:
     double_sided: bool
     textures: tuple[int, ...]
     """Texture numbers by SLOTS, -1 where a slot is empty."""
+    uv_transforms: bool
+    """Whether a texture is read by other coordinates than the first set as it is."""
     instance: int
     """The only instance of a blended batch, else -1."""
 
@@ -197,6 +199,10 @@ def pack_draws(scene: Scene, geometry: Geometry) -> tuple[Array, Array, list[Bat
     return np.array(commands, DRAW_COMMAND), np.array(order, "<u4"), batches
 
 
+def _transforms_uv(slot: TextureSlot) -> bool:
+    return slot.uv_set != 0 or not np.array_equal(slot.uv_from_uv, np.eye(2, 3))
+
+
 def instance_boxes(scene: Scene) -> tuple[Array, Array]:
     """(low, high), each (N, 3) m, of every instance's world box."""
     boxes = []
@@ -208,9 +214,17 @@ def instance_boxes(scene: Scene) -> tuple[Array, Array]:
     return np.array(low), np.array(high)
 
 
-def _batch_key(scene: Scene, number: int) -> tuple[int, bool, tuple[int, ...], int]:
-    """(place in CATEGORIES, double-sided, textures by slot, the instance if it is blended)."""
+def _batch_key(scene: Scene, number: int) -> tuple[int, bool, tuple[int, ...], bool, int]:
+    """(place in CATEGORIES, then Batch's fields from `double_sided` on)."""
     material = scene.materials[scene.meshes[scene.instances[number].mesh].material]
-    textures = tuple(-1 if s is None else s.texture for s in texture_slots(material))
+    slots = texture_slots(material)
+    textures = tuple(-1 if s is None else s.texture for s in slots)
+    transforms_uv = any(s is not None and _transforms_uv(s) for s in slots)
     alone = number if material.alpha_mode == "blend" else -1
-    return CATEGORIES.index(material.alpha_mode), material.double_sided, textures, alone
+    return (
+        CATEGORIES.index(material.alpha_mode),
+        material.double_sided,
+        textures,
+        transforms_uv,
+        alone,
+    )
