@@ -17,6 +17,7 @@ from elemental.gpu.resources import Texture
 from elemental.passes.camera_view import pack_view
 from elemental.passes.cone_trace.diffuse import CONES, combine_diffuse, trace_diffuse
 from elemental.passes.cone_trace.specular import trace_specular
+from elemental.passes.forward import draw_translucent
 from elemental.passes.gbuffer import GBuffer, draw_gbuffer
 from elemental.passes.post.fxaa import fxaa
 from elemental.passes.post.tonemap import tonemap
@@ -147,6 +148,9 @@ class Renderer:
             diffuse_gi=diffuse_gi,
             specular_gi=specular_gi if s["gi.specular"] else None,
         )
+        scene_color = draw_translucent(
+            g, view, gb, self._meshes, shadows, sky=sky, diffuse_gi=diffuse_gi
+        )
         if view_name == "scene_color":
             return scene_color
         image = tonemap(g, view, scene_color)
@@ -170,7 +174,7 @@ class Renderer:
             self._voxels = VoxelLighting(
                 self.device,
                 self._meshes,
-                Grid.fit(self._meshes.bounds, s["gi.resolution"]),
+                Grid.fit(self._meshes.bounds, s["gi.resolution"], self.scene.regions),
                 area_m2=sizing.projected_area(self.scene),
                 max_emission=sizing.max_emission(self.scene),
                 budget_bytes=s["gi.memory_budget_mb"] * MIB,

@@ -20,7 +20,7 @@ from elemental.core.errors import InputError
 from elemental.core.images import read_environment
 from elemental.gpu.device import Device
 from elemental.scene.camera_path import camera_at
-from elemental.scene.defaults import add_default_lights, is_unlit
+from elemental.scene.defaults import add_default_lights, fixed_exposure_ev, is_unlit
 from elemental.scene.load import load_scene
 from elemental.scene.model import Camera, CameraPath, Environment, Scene, framing_camera
 from elemental.settings import Settings
@@ -62,8 +62,9 @@ def open_scene(name: str | None, assignments: Iterable[str]) -> tuple[Scene, Set
 
 
 def _own_settings(scene: Scene) -> Settings:
-    exposure = {} if scene.exposure_ev is None else {"exposure": scene.exposure_ev}
-    return Settings().replace({**exposure, **scene.settings}, str(scene.path))
+    stated = scene.exposure_ev
+    exposure = fixed_exposure_ev(scene) if stated is None else stated
+    return Settings().replace({"exposure": exposure, **scene.settings}, str(scene.path))
 
 
 @dataclass(frozen=True)

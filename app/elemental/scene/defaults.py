@@ -1,4 +1,4 @@
-"""The light of a scene that has none: a sun and an even sky."""
+"""What a file leaves open: the light of a scene that has none, the exposure of a bright sun."""
 
 from __future__ import annotations
 
@@ -49,3 +49,22 @@ def _towards_sun() -> FloatArray:
     flat = math.cos(SUN_ELEVATION)
     x, z = flat * math.sin(SUN_AZIMUTH), flat * math.cos(SUN_AZIMUTH)
     return np.array([x, math.sin(SUN_ELEVATION), z], np.float32)
+
+
+BRIGHT_SUN = 32.0
+"""lux, five stops over what exposure 0 is made for: the file means photometric units."""
+
+
+def fixed_exposure_ev(scene: Scene) -> float:
+    """The exposure for a scene that states none, in EV; said in its notes where it is not 0.
+
+    A white surface facing the brightest sun gets a radiance of 1. Suns up to `BRIGHT_SUN` and
+    scenes without one stay at 0.
+    """
+    suns = [s for s in scene.lights if s.kind == "directional"]
+    brightest = max((float(s.intensity * s.color.max()) for s in suns), default=0.0)
+    if brightest <= BRIGHT_SUN:
+        return 0.0
+    exposure = round(-math.log2(brightest / math.pi), 1)
+    scene.notes.append(f"{scene.path}: a sun of {brightest:.0f} lux: exposure {exposure:g} EV")
+    return exposure

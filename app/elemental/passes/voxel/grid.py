@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
+
+from elemental.scene.model import Region
 
 REGION_SIDE = 8
 """Regions along a side of the scene; REGION_SIDE of glsl/shared/octree.glsl."""
@@ -23,7 +26,7 @@ MIN_SIZE_M = 1e-6
 
 def octal_sum(n: int) -> int:
     """8^0 + ... + 8^(n-1)."""
-    return (8**n - 1) // 7
+    return int(8**n - 1) // 7
 
 
 @dataclass(frozen=True)
@@ -43,20 +46,24 @@ class Grid:
         cls,
         bounds: tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]],
         resolution: int,
-        region_offsets: npt.NDArray[np.int64] | None = None,
+        regions: Sequence[Region] = (),
     ) -> Grid:
         """The cube for ``bounds`` (min, max), m, with ``resolution`` lattice points along the scene.
 
-        ``region_offsets`` (8, 8, 8) by [z, y, x]: levels finer (+) or coarser (-) than that.
+        Each of ``regions`` shifts the leaf level of the cells of the 8^3 that it overlaps; the
+        last one wins. Levels stay within what the octree can hold.
         """
         low, high = (np.asarray(corner, np.float64) for corner in bounds)
         leaf_level = resolution.bit_length() - 1
         extent = max(float((high - low).max()), MIN_SIZE_M)
         spacing = extent / (resolution - 1 - 2 * MARGIN_VOXELS)
-        origin = (low + high) * 0.5 - (resolution - 0.5) * spacing
+        corner = (low + high) * 0.5 - (resolution - 1) * 0.5 * spacing
         levels = np.full((REGION_SIDE,) * 3, leaf_level, np.int64)
-        if region_offsets is not None:
-            levels = np.clip(levels + region_offsets, REGION_LEVEL + 1, MAX_LEVEL)
+        for region in regions:
+            cells = _overlapped(region, corner, spacing * resolution / REGION_SIDE)
+            levels[cells] = np.clip(leaf_level + region.level_offset, REGION_LEVEL + 1, MAX_LEVEL)
+        # The cube reaches half the scene's side beyond it; its lattice stays the finest region's.
+        origin = corner - 0.5 * resolution * spacing
         return cls(origin.astype(np.float32), 2 * resolution * spacing, levels.astype(np.uint32))
 
     @property
@@ -107,3 +114,13 @@ class Grid:
     def dense_nodes(self) -> int:
         """Nodes of the dense levels."""
         return octal_sum(self.top_level + 1)
+
+
+def _overlapped(
+    region: Region, corner: npt.NDArray[np.float64], cell_m: float
+) -> tuple[slice, slice, slice]:
+    """The cells of the 8^3 regions, as a [z, y, x] index, that a world-space box overlaps."""
+    first = np.floor((region.minimum - corner) / cell_m).clip(0, REGION_SIDE).astype(int)
+    end = np.ceil((region.maximum - corner) / cell_m).clip(0, REGION_SIDE).astype(int)
+    x, y, z = (slice(int(a), int(b)) for a, b in zip(first, end, strict=True))
+    return z, y, x

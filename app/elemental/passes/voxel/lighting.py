@@ -42,9 +42,7 @@ class VoxelLighting:
         self.scene = scene
         self.budget_bytes = budget_bytes
         if capacity is None:
-            capacity = sizing.capacity_for(
-                sizing.count(device, scene, grid, area_m2), budget_bytes
-            )
+            capacity = sizing.capacity_for(sizing.count(device, scene, grid, area_m2), budget_bytes)
         self.octree = Octree(device, grid, capacity, max_emission)
         self.counts = NOTHING
         self._built_version: int | None = None

@@ -115,7 +115,9 @@ class Survey:
         self.grid = grid
         self.capacity = capacity
         self.max_emission = max_emission
-        self.regions = device.buffer("octree.regions", grid.region_levels.ravel(), category=CATEGORY)
+        self.regions = device.buffer(
+            "octree.regions", grid.region_levels.ravel(), category=CATEGORY
+        )
         self.state = device.buffer("octree.state", _struct_bytes("OctreeState"), category=CATEGORY)
         self.empty_state = device.buffer("octree.empty_state", _empty_state(), category=CATEGORY)
         self.params: dict[str, Block] = {"Octree": self._pack(ATLAS_SIDES_LOG2[0], (1.0, 1.0, 1.0))}

@@ -82,7 +82,9 @@ def capacity_for(counts: Counts, budget_bytes: int) -> Capacity:
         interior=max(counts.interior, 1),
     )
     excess = max(0, wanted.nbytes() - budget_bytes)
-    a_leaf = replace(wanted, bricks=1, leaves=1).nbytes() - replace(wanted, bricks=0, leaves=0).nbytes()
+    a_leaf = (
+        replace(wanted, bricks=1, leaves=1).nbytes() - replace(wanted, bricks=0, leaves=0).nbytes()
+    )
     cut = min(max(-(-excess // a_leaf), wanted.bricks - BRICKS_MAX), wanted.leaves - 1)
     cut = max(cut, 0)
     return replace(wanted, bricks=wanted.bricks - cut, leaves=wanted.leaves - cut)
