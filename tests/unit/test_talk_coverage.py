@@ -76,6 +76,29 @@ def test_the_line_is_true(row: Row) -> None:
     assert problems(row, ROOT) == []
 
 
+def unlisted(table: list[Row], tests: Path) -> list[str]:
+    """Test files that name a system whose line does not name them."""
+    listed = {row.id: {name.partition("::")[0] for name in row.tests} for row in table}
+    found = []
+    for path in sorted(tests.rglob("test_*.py")):
+        name = path.relative_to(tests.parent).as_posix()
+        named = set(re.findall(r"\b[A-Z]{2}-\d\d\b", path.read_text(encoding="utf-8")))
+        if path.name != Path(__file__).name:
+            found += [f"{k}: {name}" for k in sorted(named & set(listed)) if name not in listed[k]]
+    return found
+
+
+def test_each_test_that_names_a_system_is_listed() -> None:
+    assert unlisted(TABLE, ROOT / "tests") == []
+
+
+def test_finds_an_unlisted_test(tmp_path: Path) -> None:
+    (tmp_path / "tests").mkdir()
+    (tmp_path / "tests" / "test_a.py").write_text("# GI-02\n")
+    (row,) = rows("| GI-02 | x | works | `glsl/a.glsl` | `tests/test_b.py` |")
+    assert unlisted([row], tmp_path / "tests") == ["GI-02: tests/test_a.py"]
+
+
 @pytest.mark.parametrize(
     ("line", "complaint"),
     [
