@@ -67,7 +67,7 @@ class Frame:
 
 
 class Renderer:
-    """A scene on the device, and how a frame of it is made. ``size`` is (width, height) in pixels."""
+    """A scene on the device, and how a frame of it is made. ``size``: (width, height), px."""
 
     def __init__(
         self, device: Device, scene: Scene, settings: Settings, size: tuple[int, int]

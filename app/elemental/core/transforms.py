@@ -63,7 +63,7 @@ def perspective(fov_y: float, aspect: float, near: float, far: float = math.inf)
     return _from_pyrr(matrix44.create_perspective_projection(degrees, aspect, near, far))
 
 
-def orthographic(  # noqa: PLR0917 (OpenGL's own order of the six)
+def orthographic(
     left: float, right: float, bottom: float, top: float, near: float, far: float
 ) -> Matrix:
     """clip_from_view of the view-space box left..right, bottom..top, near..far along -z."""

@@ -48,7 +48,7 @@ class Grid:
         resolution: int,
         regions: Sequence[Region] = (),
     ) -> Grid:
-        """The cube for ``bounds`` (min, max), m, with ``resolution`` lattice points along the scene.
+        """The cube for ``bounds`` (min, max), m; ``resolution`` lattice points along the scene.
 
         Each of ``regions`` shifts the leaf level of the cells of the 8^3 that it overlaps; the
         last one wins. Levels stay within what the octree can hold.
@@ -62,6 +62,8 @@ class Grid:
         for region in regions:
             cells = _overlapped(region, corner, spacing * resolution / REGION_SIDE)
             levels[cells] = np.clip(leaf_level + region.level_offset, REGION_LEVEL + 1, MAX_LEVEL)
+        # A leaf answers for finer levels where a descent ends at it: below the dense levels.
+        levels = np.maximum(levels, levels.max() - DENSE_LEVELS_BELOW_LEAF)
         # The cube reaches half the scene's side beyond it; its lattice stays the finest region's.
         origin = corner - 0.5 * resolution * spacing
         return cls(origin.astype(np.float32), 2 * resolution * spacing, levels.astype(np.uint32))
