@@ -52,6 +52,10 @@ ConeSample cone_sample(vec3 p, float lod, vec3 direction, vec3 inverse_direction
         return ConeSample(vec4(0.0), exit_distance(p, inverse_direction, direction, empty_cell, size));
     }
     uint reached_shift = uint(u_octree.leaf_level - reached + 1);
+    if (reached < coarse && node.child == NODE_HOLLOW) {
+        vec3 hollow_cell = vec3(voxel >> reached_shift);
+        return ConeSample(vec4(0.0), exit_distance(p, inverse_direction, direction, hollow_cell, float(1u << reached_shift)));
+    }
     vec3 local = p / float(1u << reached_shift) - vec3(voxel >> reached_shift);
     bool dense_child = coarse < u_octree.top_level;
     if (reached < coarse || (!dense_child && node.child == 0u)) {
@@ -61,6 +65,7 @@ ConeSample cone_sample(vec3 p, float lod, vec3 direction, vec3 inverse_direction
     float share = lod - float(mip);  // of the coarse level
     vec4 value = share > 0.0 ? share * brick_lookup(node, local, sides, weights) : vec4(0.0);
     uvec3 child_cell = voxel >> (shift - 1u);
+    if (!dense_child && node.child == NODE_HOLLOW) return ConeSample(value, 0.0);
     Node child = nodes[dense_child ? dense_node(coarse + 1, child_cell) : child_node(node.child, child_cell)];
     if (node_has_brick(child)) {
         vec3 child_local = local * 2.0 - vec3(child_cell & 1u);

@@ -18,7 +18,11 @@ uint child_node(uint tile_plus_one, uvec3 child_cell) {
 
 bool node_has_brick(Node node) { return (node.brick & NODE_BRICK_MASK) != 0u; }
 uint node_brick(Node node) { return (node.brick & NODE_BRICK_MASK) - 1u; }
-uint node_child(Node node) { return node_has_brick(node) ? node.child : 0u; }
+uint node_child(Node node) { return node_has_brick(node) && node.child != NODE_HOLLOW ? node.child : 0u; }
+// Whether the node at which a descent ended answers for the wanted level.
+bool node_answers(Node node, int reached, int wanted) {
+    return node_has_brick(node) && (reached == wanted || node.child != NODE_HOLLOW);
+}
 float node_scale(Node node) { return exp2(float(int(node.brick >> NODE_SCALE_SHIFT) - NODE_SCALE_BIAS)); }
 
 // Descends from the dense levels towards the node `cell` of `level`; `reached` is where it ended.

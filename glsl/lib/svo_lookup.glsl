@@ -19,11 +19,12 @@ vec4 brick_lookup(Node node, vec3 local, uvec3 sides, vec3 weights) {
     return vec4(value.rgb * node_scale(node), value.a);
 }
 
-// Mip counts from the finest level. Where the octree ends above it, the deepest level answers.
+// Mip counts from the finest level. A leaf of a coarser region answers for finer levels too.
 vec4 SVOLookupLevel(vec3 Pos, int Mip, vec3 Direction) {
     if (!inside_octree(octree_from_world(Pos))) return vec4(0.0);
-    NodeLocation at = octree_locate(Pos, max(u_octree.leaf_level - Mip, 0));
+    int level = max(u_octree.leaf_level - Mip, 0);
+    NodeLocation at = octree_locate(Pos, level);
     Node node = nodes[at.node];
-    if (!node_has_brick(node)) return vec4(0.0);
+    if (!node_answers(node, at.level, level)) return vec4(0.0);
     return brick_lookup(node, at.local, sides_seen(Direction), side_weights(Direction));
 }

@@ -21,8 +21,10 @@ const uint SCAN_BLOCKS = 2048u;        // 64-node blocks that one such group sum
 const uint REGION_SIDE = 8u;           // the scene is split into 8^3 regions, each with its leaf level
 const int REGION_LEVEL = 4;            // nodes of this level are as large as a region
 
-// A node is two words. child: index of the tile of eight children + 1, 0 = none.
+// A node is two words. child: index of the tile of eight children + 1; 0 = a leaf (or a node whose tile was
+// dropped), which answers for finer levels too; NODE_HOLLOW = no child is there, finer levels are empty.
 // brick: see NODE_BRICK_MASK; where it is 0, `child` holds the level of the largest empty ancestor.
+const uint NODE_HOLLOW = 0xffffffffu;
 struct Node {
     uint child;
     uint brick;

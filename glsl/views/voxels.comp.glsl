@@ -48,7 +48,7 @@ void main() {
         uvec3 point = uvec3(p);
         int reached;
         Node node = nodes[find_node(point >> 1u, u_voxel_view.level, reached)];
-        if (node_has_brick(node)) {
+        if (node_answers(node, reached, u_voxel_view.level)) {
             uint shift = uint(u_voxel_view.level - reached);
             vec3 local = vec3((point >> shift) & 1u) * 0.5;
             vec4 value = brick_lookup(node, local, sides_seen(direction), side_weights(direction));

@@ -17,7 +17,7 @@ vec4 over(vec4 front, vec4 back) { return front + (1.0 - front.a) * back; }
 
 // The brick of a cell of the next finer level. The node's own children need no descent.
 uint finer_brick(uvec3 own_cell, uint own_child, ivec3 cell, int level, out int reached) {
-    if (own_child == 0u || uvec3(cell >> 1) != own_cell) return brick_of_cell(cell, level, reached);
+    if (own_child == 0u || own_child == NODE_HOLLOW || uvec3(cell >> 1) != own_cell) return brick_of_cell(cell, level, reached);
     reached = level;
     Node child = nodes[child_node(own_child, uvec3(cell))];
     return node_has_brick(child) ? node_brick(child) : NO_BRICK;

@@ -1,7 +1,7 @@
 // Writes the nodes and the bricks' places: every word by one thread, from ranks alone.
 // [Mittring12 "Sparse Voxel Octree": fully maintained on GPU]
 
-#include "lib/lattice.glsl"
+#include "lib/regions.glsl"
 #include "lib/dense_nodes.glsl"
 #include "lib/node_ranks.glsl"
 
@@ -59,10 +59,14 @@ void write_node(uint index, int level, uvec3 cell, bool exists, uint brick) {
     if (exists && brick < octree_state.brick_count) {
         uint block, byte_start;
         uint byte = child_byte(level, cell, block, byte_start);
-        node.child = tile_of_children(level, byte, block, byte_start);
+        bool leaf = level >= leaf_level_of_cell(ivec3(cell), level);
+        bool hollow = byte == 0u && !leaf && level >= u_octree.top_level;
+        node.child = hollow ? NODE_HOLLOW : tile_of_children(level, byte, block, byte_start);
         node.brick = brick + 1u;
-        uint place = index | (own_points(level, cell) << BRICK_POINTS_SHIFT);
-        bricks[brick] = Brick(pack_cell(cell, level, byte == 0u), place);
+        // Filtered points beside a coarser region hold what that lends them.
+        bool lent = !leaf && u_octree.coarsest_leaf < u_octree.leaf_level;
+        uint place = index | ((lent ? 0xffu : own_points(level, cell)) << BRICK_POINTS_SHIFT);
+        bricks[brick] = Brick(pack_cell(cell, level, leaf), place);
     } else {
         node.child = uint(empty_level(level, cell));
     }

@@ -97,7 +97,7 @@ def build(g: Graph, octree: Octree, fragments: AnyBuffer) -> None:
     found = find_nodes(g, octree, fragments)
     g.compute(
         NODES,
-        reads={**found, "State": octree.state},
+        reads={**found, "State": octree.state, "Regions": octree.regions},
         writes={"Nodes": octree.nodes, "Bricks": octree.bricks},
         params=octree.params,
         threads=octree.grid.block_count,

@@ -1,0 +1,151 @@
+"""The octree's pools as NumPy arrays, found by walking the nodes as the layout says."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from elemental.core.layout import layouts
+from elemental.passes.voxel.grid import octal_sum
+from glsl.harness import run_glsl
+from gpu.voxel.stage import Stage
+
+Array = npt.NDArray[Any]
+ABSENT = -1
+
+
+def constant(name: str) -> int:
+    return int(layouts().constant(name))
+
+
+def cell_grid(side: int) -> Array:
+    """(side^3, 3) coordinates of a cube of cells, x slowest."""
+    return np.indices((side,) * 3).reshape(3, -1).T
+
+
+def morton(cells: Array) -> Array:
+    """(N,) Morton codes of (N, 3), x in the lowest bit."""
+    cells = np.asarray(cells, np.int64)
+    code = np.zeros(cells.shape[:-1], np.int64)
+    for bit in range(10):
+        for axis in range(3):
+            code |= (cells[..., axis] >> bit & 1) << (3 * bit + axis)
+    return code
+
+
+@dataclass
+class Pools:
+    """What the nodes and bricks say.
+
+    ``node[level]``, ``brick[level]`` (2^level,)*3 int64 by [x, y, z]: index of the node that stands
+    for exactly this cell and of its brick, or ABSENT. Of brick b: ``cell[b]`` (3,), ``level[b]``,
+    ``is_leaf[b]``, ``scale[b]``, its HDR multiplier, and ``points[b]``, which of its own eight
+    points hold anything, a bit each.
+    """
+
+    node: list[Array]
+    brick: list[Array]
+    child_word: Array
+    cell: Array
+    level: Array
+    is_leaf: Array
+    node_of_brick: Array
+    points: Array
+    scale: Array
+
+    @classmethod
+    def read(cls, stage: Stage) -> Pools:
+        grid, counts = stage.own_grid, stage.counts
+        used = grid.dense_nodes + 8 * counts.tiles
+        nodes = stage.octree.nodes.read(layouts().struct("Node"), used)
+        child = nodes["child"].astype(np.int64)
+        brick_word = nodes["brick"].astype(np.int64)
+        brick_of = (brick_word & constant("NODE_BRICK_MASK")) - 1
+        node: list[Array] = []
+        brick: list[Array] = []
+        for level in range(grid.leaf_level + 1):
+            side = 1 << level
+            cells = cell_grid(side)
+            index = np.full(len(cells), ABSENT)
+            if level <= grid.top_level:
+                index = octal_sum(level) + morton(cells)
+            else:
+                parent = node[-1][tuple((cells >> 1).T)]
+                has_tile = (parent != ABSENT) & (brick_of[parent] != ABSENT)
+                has_tile &= (child[parent] != 0) & (child[parent] != constant("NODE_HOLLOW"))
+                tile = child[parent] - 1
+                octant = (cells & 1) @ np.array([1, 2, 4])
+                index = np.where(has_tile, grid.dense_nodes + 8 * tile + octant, ABSENT)
+            node.append(index.reshape((side,) * 3))
+            brick.append(np.where(index != ABSENT, brick_of[index], ABSENT).reshape((side,) * 3))
+        bricks = stage.octree.bricks.read(layouts().struct("Brick"), counts.bricks)
+        cell = bricks["cell"].astype(np.int64)
+        owner = bricks["node"].astype(np.int64) & constant("BRICK_NODE_MASK")
+        word = brick_word[owner]
+        exponent = (word >> constant("NODE_SCALE_SHIFT")) - constant("NODE_SCALE_BIAS")
+        return cls(
+            node=node,
+            brick=brick,
+            child_word=child,
+            cell=np.stack([cell & 511, cell >> 9 & 511, cell >> 18 & 511], axis=-1),
+            level=cell >> 27 & 15,
+            is_leaf=(cell & constant("BRICK_LEAF")) != 0,
+            node_of_brick=owner,
+            points=bricks["node"].astype(np.int64) >> constant("BRICK_POINTS_SHIFT"),
+            scale=np.exp2(exponent.astype(np.float64)),
+        )
+
+    def brick_at(self, cells: Array, level: int) -> Array:
+        """(N,) bricks of cells (N, 3) of one level, ABSENT outside the cube too."""
+        side = 1 << level
+        inside = np.all((cells >= 0) & (cells < side), axis=-1, keepdims=True)
+        x, y, z = np.where(inside, cells, 0).T
+        return np.where(inside[:, 0], self.brick[level][x, y, z], ABSENT)
+
+
+def read_texels(stage: Stage) -> Array:
+    """(B, 6, 3, 3, 3, 4) uint8 codes of every brick's texels by [side, z, y, x]."""
+    bricks = stage.counts.bricks
+    body = """
+        int b = index / 162, side = (index / 27) % 6, i = index % 27;
+        ivec3 texel = ivec3(i % 3, (i / 3) % 3, i / 9 + 3 * side);
+        result = texelFetch(u_brick_atlas, brick_texel(uint(b)) + texel, 0) * 255.0;
+    """
+    codes = run_glsl(
+        stage.device,
+        ["lib/svo_lookup.glsl"],
+        body,
+        output="vec4",
+        count=bricks * 162,
+        reads=stage.octree.tracing_reads(),
+        params=stage.octree.params,
+    )
+    return np.asarray(np.rint(codes), np.uint8).reshape(bricks, 6, 3, 3, 3, 4)
+
+
+def read_hdr(stage: Stage) -> Array:
+    """(B, 8, 6, 4) float32 HDR values of every brick's own voxels by [voxel, side]."""
+    bricks = stage.counts.bricks
+    body = """
+        uint b = uint(index) / 24u, voxel = (uint(index) / 3u) % 8u, axis = uint(index) % 3u;
+        AxisVoxel v = brick_voxel(b, voxel, axis);
+        values[index * 2] = v.plus_side;
+        values[index * 2 + 1] = v.minus_side;
+        result = 0.0;
+    """
+    values = stage.device.buffer("values", bricks * 48 * 16)
+    run_glsl(
+        stage.device,
+        ["lib/sided_voxel.glsl"],
+        body,
+        count=bricks * 24,
+        functions="layout(std430) writeonly buffer Values { vec4 values[]; };",
+        reads={**stage.voxel_reads(), "Values": values},
+        params=stage.octree.params,
+    )
+    result = values.read(np.float32).reshape(bricks, 8, 6, 4).copy()
+    values.release()
+    return result
