@@ -21,6 +21,9 @@ vec3 side_weights(vec3 direction) {
     return weights / (weights.x + weights.y + weights.z);
 }
 
+// A short mean normal says that the voxel's surfaces face several ways.
+float normal_certainty(float squared_length) { return min(squared_length * 4.0, 1.0); }
+
 // Share of a leaf's radiance that a side shows, from the squared length of its mean normal and the
 // cosine between that and the side. A surface with the normal n shows its radiance to
 // the half space in front of it; sides can only say that with error. The side seen edge-on
@@ -31,7 +34,14 @@ const float SIDE_EDGE_ON = 0.75;
 float side_visibility(float squared_length, float cosine) {
     float slope = sqrt(3.0) * cosine;
     float facing = clamp(slope > 0.0 ? mix(SIDE_EDGE_ON, 1.0, slope) : SIDE_EDGE_ON * (1.0 + slope), 0.0, 1.0);
-    // A short average normal means that the voxel's surfaces face several ways.
-    float certainty = min(squared_length * 4.0, 1.0);
-    return mix(1.0, facing, certainty);
+    return mix(1.0, facing, normal_certainty(squared_length));
+}
+
+// Share of its radiance that a voxel with this mean normal shows to a ray along `direction`.
+const float FRONT_SLOPE = 4.0;  // of the change from front to back, over the cosine
+
+float front_visibility(vec3 mean_normal, vec3 direction) {
+    float squared_length = dot(mean_normal, mean_normal);
+    float cosine = -dot(mean_normal, direction) * inversesqrt(max(squared_length, 1e-6));
+    return mix(1.0, clamp(0.5 + FRONT_SLOPE * cosine, 0.0, 1.0), normal_certainty(squared_length));
 }

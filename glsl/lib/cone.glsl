@@ -38,7 +38,7 @@ struct ConeSample {
 };
 
 // Both levels around a fractional one with a single descent. p in finest voxels.
-ConeSample cone_sample(vec3 p, float lod, vec3 direction, vec3 inverse_direction, uvec3 sides, vec3 weights) {
+ConeSample cone_sample(vec3 p, float lod, vec3 direction, vec3 inverse_direction, ViewOfVoxels view) {
     int mip = int(lod);
     int coarse = u_octree.leaf_level - mip - 1;
     uint shift = uint(mip + 2);  // a cell of `coarse` is 2^shift voxels wide
@@ -60,16 +60,16 @@ ConeSample cone_sample(vec3 p, float lod, vec3 direction, vec3 inverse_direction
     bool dense_child = coarse < u_octree.top_level;
     if (reached < coarse || (!dense_child && node.child == 0u)) {
         // A leaf of a coarser region stands for its finer levels too.
-        return ConeSample(brick_lookup(node, local, sides, weights), 0.0);
+        return ConeSample(node_lookup(node, reached, local, view), 0.0);
     }
     float share = lod - float(mip);  // of the coarse level
-    vec4 value = share > 0.0 ? share * brick_lookup(node, local, sides, weights) : vec4(0.0);
+    vec4 value = share > 0.0 ? share * sides_lookup(node, local, view) : vec4(0.0);
     uvec3 child_cell = voxel >> (shift - 1u);
     if (!dense_child && node.child == NODE_HOLLOW) return ConeSample(value, 0.0);
     Node child = nodes[dense_child ? dense_node(coarse + 1, child_cell) : child_node(node.child, child_cell)];
     if (node_has_brick(child)) {
         vec3 child_local = local * 2.0 - vec3(child_cell & 1u);
-        value += (1.0 - share) * brick_lookup(child, child_local, sides, weights);
+        value += (1.0 - share) * node_lookup(child, coarse + 1, child_local, view);
     }
     return ConeSample(value, 0.0);
 }
@@ -81,8 +81,7 @@ vec4 cone_trace_from(vec3 Pos, vec3 Direction, float ConeAngle, float start_m) {
     vec3 origin = octree_from_world(Pos) * side;
     vec3 guarded = mix(Direction, vec3(1e-6), lessThan(abs(Direction), vec3(1e-6)));
     vec3 inverse_direction = 1.0 / guarded;
-    uvec3 sides = sides_seen(Direction);
-    vec3 weights = side_weights(Direction);
+    ViewOfVoxels view = view_of_voxels(Direction);
     float widening = 2.0 * tan(ConeAngle);
     float lod_last = float(u_octree.leaf_level) - 1e-3;
     float t = start_m / u_octree.voxel_m;
@@ -92,7 +91,7 @@ vec4 cone_trace_from(vec3 Pos, vec3 Direction, float ConeAngle, float start_m) {
         vec3 p = origin + Direction * t;
         if (any(lessThan(p, vec3(0.0))) || any(greaterThanEqual(p, vec3(side)))) break;
         float lod = min(log2(width), lod_last);
-        ConeSample s = cone_sample(p, lod, guarded, inverse_direction, sides, weights);
+        ConeSample s = cone_sample(p, lod, guarded, inverse_direction, view);
         if (s.empty_exit > 0.0) {
             t += max(s.empty_exit + CONE_SKIP_EPSILON, width * CONE_STEP);
             continue;

@@ -5,18 +5,45 @@
 #include "lib/brick_atlas.glsl"
 #include "lib/ambient_cube.glsl"
 
-uniform sampler3D u_brick_atlas;  // linear filter: trilinear inside a brick's 3x3x3
+// Linear filters: trilinear inside a brick's 3x3x3.
+uniform sampler3D u_brick_atlas;  // six sides: premultiplied radiance / multiplier, opacity
+uniform sampler3D u_leaf_colors;  // premultiplied radiance / multiplier, opacity
+uniform sampler3D u_leaf_normals; // mean normal x opacity
 
-// Three trilinear lookups, one for each side that the direction sees, weighted by direction.
+// How a ray looks at voxels.
+struct ViewOfVoxels {
+    vec3 direction;
+    uvec3 sides;   // that it sees
+    vec3 weights;  // of these sides
+};
+
+ViewOfVoxels view_of_voxels(vec3 direction) {
+    return ViewOfVoxels(direction, sides_seen(direction), side_weights(direction));
+}
+
+// Three trilinear lookups, one for each side that the ray sees, weighted by direction.
 // local: 0..1 in the node. Premultiplied HDR radiance and opacity a voxel of the node's level.
-vec4 brick_lookup(Node node, vec3 local, uvec3 sides, vec3 weights) {
+vec4 sides_lookup(Node node, vec3 local, ViewOfVoxels view) {
     vec3 at = (vec3(brick_texel(node_brick(node))) + 0.5 + 2.0 * local) * u_octree.atlas_texel;
-    vec3 z = at.z + vec3(sides * BRICK_SIDE) * u_octree.atlas_texel.z;
-    vec4 value = vec4(0.0);
-    if (weights.x > 0.0) value += weights.x * textureLod(u_brick_atlas, vec3(at.xy, z.x), 0.0);
-    if (weights.y > 0.0) value += weights.y * textureLod(u_brick_atlas, vec3(at.xy, z.y), 0.0);
-    if (weights.z > 0.0) value += weights.z * textureLod(u_brick_atlas, vec3(at.xy, z.z), 0.0);
+    vec3 z = at.z + vec3(view.sides * BRICK_SIDE) * u_octree.atlas_texel.z;
+    vec4 value = view.weights.x * textureLod(u_brick_atlas, vec3(at.xy, z.x), 0.0);
+    value += view.weights.y * textureLod(u_brick_atlas, vec3(at.xy, z.y), 0.0);
+    value += view.weights.z * textureLod(u_brick_atlas, vec3(at.xy, z.z), 0.0);
     return vec4(value.rgb * node_scale(node), value.a);
+}
+
+// The finest level knows the normal, so that its front shows all of its radiance, its back none.
+vec4 leaf_lookup(Node node, vec3 local, ViewOfVoxels view) {
+    vec3 at = (vec3(leaf_texel(node.child - 1u)) + 0.5 + 2.0 * local) * u_octree.leaf_atlas_texel;
+    vec4 value = textureLod(u_leaf_colors, at, 0.0);
+    if (value.a <= 0.0) return vec4(0.0);
+    vec3 normal = textureLod(u_leaf_normals, at, 0.0).xyz / value.a;
+    return vec4(value.rgb * (node_scale(node) * front_visibility(normal, view.direction)), value.a);
+}
+
+vec4 node_lookup(Node node, int level, vec3 local, ViewOfVoxels view) {
+    if (level == u_octree.leaf_level) return leaf_lookup(node, local, view);
+    return sides_lookup(node, local, view);
 }
 
 // Mip counts from the finest level. A leaf of a coarser region answers for finer levels too.
@@ -26,5 +53,5 @@ vec4 SVOLookupLevel(vec3 Pos, int Mip, vec3 Direction) {
     NodeLocation at = octree_locate(Pos, level);
     Node node = nodes[at.node];
     if (!node_answers(node, at.level, level)) return vec4(0.0);
-    return brick_lookup(node, at.local, sides_seen(Direction), side_weights(Direction));
+    return node_lookup(node, at.level, at.local, view_of_voxels(Direction));
 }

@@ -14,6 +14,7 @@ const int NODE_SCALE_BIAS = 128;
 const uint BRICK_VOXELS = 8u;          // 2x2x2
 const uint BRICK_SIDE = 3u;            // 3x3x3 with the redundant border
 const uint BRICK_DIRECTIONS = 6u;      // +x -x +y -y +z -z: the side of the voxel that one looks at
+                                       // (the finest level keeps colour and normal instead)
 const uint FRAGMENT_GROUP = 128u;      // threads a group over the fragment queue
 const uint BRICK_GROUP = 64u;          // threads a group over bricks and their voxels
 const uint SCAN_GROUP = 256u;          // threads a group in the prefix sums
@@ -21,7 +22,7 @@ const uint SCAN_BLOCKS = 2048u;        // 64-node blocks that one such group sum
 const uint REGION_SIDE = 8u;           // the scene is split into 8^3 regions, each with its leaf level
 const int REGION_LEVEL = 4;            // nodes of this level are as large as a region
 
-// A node is two words. child: index of the tile of eight children + 1; 0 = a leaf (or a node whose tile was
+// A node is two words. On the finest level, child is the leaf brick's slot + 1. Above it: index of the tile of eight children + 1; 0 = a leaf (or a node whose tile was
 // dropped), which answers for finer levels too; NODE_HOLLOW = no child is there, finer levels are empty.
 // brick: see NODE_BRICK_MASK; where it is 0, `child` holds the level of the largest empty ancestor.
 const uint NODE_HOLLOW = 0xffffffffu;
@@ -75,7 +76,8 @@ struct OctreeState {
     uint leaf_count;                   // bricks of the levels that may hold leaves
     uint interior_count;               // bricks above the finest level
     DispatchArgs fragments;
-    DispatchArgs bricks;               // a thread a brick
+    DispatchArgs interior_bricks;      // a thread a brick above the finest level
+    DispatchArgs leaf_bricks;          // a thread a brick of the finest level
     DispatchArgs leaf_voxels;          // a thread a voxel, over bricks of the levels that may hold leaves
     DispatchArgs level_axes[10];       // a thread an axis of a voxel of this level
     uint level_first[12];              // first brick of each level; [levels] = brick_count
@@ -90,12 +92,14 @@ layout(std140) uniform Octree {
     float voxel_m;       // metres between points of the finest lattice
     float fixed_point;   // accumulator units a unit of emitted radiance
     uint block_count;    // 64-node blocks of all levels
-    uint atlas_side_log2; // bricks a row and rows a layer of the atlas, as a power of two
+    uint atlas_side_log2;      // bricks a row and rows a layer of the six-sided atlas, log2
+    uint leaf_atlas_side_log2; // the same of the finest level's
     uint fragment_capacity;
     uint tile_capacity;
     uint brick_capacity;
     uint leaf_capacity;      // bricks that can hold leaf attributes
     uint interior_capacity;  // bricks that can hold filtered HDR values
-    vec3 atlas_texel;    // 1 / atlas size in texels
+    vec3 atlas_texel;      // 1 / size in texels
+    vec3 leaf_atlas_texel;
     vec3 ambient;        // radiance that every voxel receives besides
 } u_octree;

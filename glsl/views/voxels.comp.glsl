@@ -41,6 +41,7 @@ void main() {
     float side = float(2 << u_voxel_view.level);
     vec3 origin = octree_from_world(u_view.eye_ws) * side + 0.5;
     vec3 color = BACKGROUND;
+    ViewOfVoxels view = view_of_voxels(direction);
     float t = enter_cube(origin, direction, side);
     for (int i = 0; t >= 0.0 && i < STEPS_MAX; ++i) {
         vec3 p = origin + direction * (t + STEP_EPSILON);
@@ -51,7 +52,7 @@ void main() {
         if (node_answers(node, reached, u_voxel_view.level)) {
             uint shift = uint(u_voxel_view.level - reached);
             vec3 local = vec3((point >> shift) & 1u) * 0.5;
-            vec4 value = brick_lookup(node, local, sides_seen(direction), side_weights(direction));
+            vec4 value = node_lookup(node, reached, local, view);
             if (value.a >= OCCUPIED) {
                 color = value.rgb / value.a;
                 break;

@@ -62,6 +62,7 @@ void write_node(uint index, int level, uvec3 cell, bool exists, uint brick) {
         bool leaf = level >= leaf_level_of_cell(ivec3(cell), level);
         bool hollow = byte == 0u && !leaf && level >= u_octree.top_level;
         node.child = hollow ? NODE_HOLLOW : tile_of_children(level, byte, block, byte_start);
+        if (level == u_octree.leaf_level) node.child = brick - octree_state.interior_count + 1u;
         node.brick = brick + 1u;
         // Filtered points beside a coarser region hold what that lends them.
         bool lent = !leaf && u_octree.coarsest_leaf < u_octree.leaf_level;

@@ -66,7 +66,8 @@ void main() {
     octree_state.tile_dropped = all.y - octree_state.tile_count;
     octree_state.leaf_count = kept - min(before_leaves, kept);
     octree_state.interior_count = min(before_finest, kept);
-    octree_state.bricks = dispatch_args(kept, BRICK_GROUP);
+    octree_state.interior_bricks = dispatch_args(octree_state.interior_count, BRICK_GROUP);
+    octree_state.leaf_bricks = dispatch_args(kept - octree_state.interior_count, BRICK_GROUP);
     octree_state.leaf_voxels = dispatch_args(octree_state.leaf_count * BRICK_VOXELS, BRICK_GROUP);
     for (int level = 0; level <= levels; ++level) {
         octree_state.level_first[level] = min(bricks_before_level(level, all.x), kept);

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from elemental.gpu.graph import Graph
+from elemental.gpu.refs import BufferHandle
 from elemental.gpu.shaders import Compute
 from elemental.passes.voxel.build import level_params, state_offset
 from elemental.passes.voxel.octree import Octree
@@ -17,6 +18,9 @@ LIGHT = Compute("voxel/light.comp.glsl")
 LIGHT_AND_GATHER = Compute("voxel/light.comp.glsl", defines={"GATHER": 1})
 FILTER = Compute("voxel/filter.comp.glsl")
 COMPRESS = Compute("voxel/compress.comp.glsl")
+COMPRESS_LEAVES = Compute("voxel/compress_leaves.comp.glsl")
+
+SIDED_BYTES_A_BRICK = 8 * 6 * 8
 
 
 def light_voxels(g: Graph, octree: Octree, shadows: ShadowMaps, sky: Sky, gather: bool) -> None:
@@ -44,31 +48,39 @@ def light_voxels(g: Graph, octree: Octree, shadows: ShadowMaps, sky: Sky, gather
     )
 
 
-def filter_levels(g: Graph, octree: Octree) -> None:
-    """Six-sided values of every level above the finest, from the finest up."""
+def filter_levels(g: Graph, octree: Octree) -> BufferHandle:
+    """Six-sided values of every level above the finest, from the finest up: 8 x 6 half4 a brick."""
+    sided = g.buffer("voxel.sided", max(octree.capacity.interior, 1) * SIDED_BYTES_A_BRICK)
+    g.clear_buffer(sided)
     for level in range(octree.grid.leaf_level - 1, -1, -1):
         g.compute(
             FILTER,
             f"filter.{level}",
             reads={**octree.voxel_reads(), "Nodes": octree.nodes},
-            writes={"Sided": octree.sided},
+            writes={"Sided": sided},
             params={**octree.params, "OctreeLevel": level_params(level)},
             indirect=(octree.state, state_offset("level_axes", level)),
         )
+    return sided
 
 
-def compress(g: Graph, octree: Octree) -> None:
+def compress(g: Graph, octree: Octree, sided: BufferHandle) -> None:
     """Every brick's texels with the redundant border, and its HDR multiplier."""
-    g.clear_texture(octree.atlas)
+    atlases = (octree.atlas, octree.leaf_colors, octree.leaf_normals)
+    for atlas in atlases:
+        g.clear_texture(atlas)
+    nodes = {"Nodes": octree.nodes, "NodeWords": octree.nodes}
     g.compute(
         COMPRESS,
-        reads=octree.voxel_reads(),
-        writes={
-            "Sided": octree.sided,
-            "Nodes": octree.nodes,
-            "NodeWords": octree.nodes,
-            "u_atlas": octree.atlas,
-        },
+        reads={**octree.voxel_reads(), "Sided": sided},
+        writes={**nodes, "u_atlas": octree.atlas},
         params=octree.params,
-        indirect=(octree.state, state_offset("bricks")),
+        indirect=(octree.state, state_offset("interior_bricks")),
+    )
+    g.compute(
+        COMPRESS_LEAVES,
+        reads={**octree.voxel_reads(), "Sided": sided},
+        writes={**nodes, "u_colors": octree.leaf_colors, "u_normals": octree.leaf_normals},
+        params=octree.params,
+        indirect=(octree.state, state_offset("leaf_bricks")),
     )

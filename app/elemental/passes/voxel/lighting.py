@@ -72,8 +72,7 @@ class VoxelLighting:
         if key != self._lit_by:
             for bounce in range(max(bounces, 1)):
                 light_voxels(g, self.octree, shadows, sky, gather=bounce > 0)
-                filter_levels(g, self.octree)
-                compress(g, self.octree)
+                compress(g, self.octree, filter_levels(g, self.octree))
             self._lit_by = key
         return self.octree
 

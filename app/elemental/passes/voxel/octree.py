@@ -9,14 +9,16 @@ import numpy as np
 
 from elemental.core.layout import Block, layouts, pack
 from elemental.gpu.device import Device
-from elemental.gpu.formats import RGBA8
+from elemental.gpu.formats import RGBA8, RGBA8_SNORM, Format
 from elemental.gpu.refs import Ref, Sampled
-from elemental.gpu.resources import Buffer
+from elemental.gpu.resources import Buffer, Texture
 from elemental.passes.voxel.grid import Grid
 
 CATEGORY = "octree"
-BRICK_TEXELS = (3, 3, 18)
-"""3x3x3 texels for each of six directions, stacked in z."""
+SIDED_TEXELS = (3, 3, 18)
+"""A brick above the finest level: 3x3x3 texels for each of six directions, stacked in z."""
+LEAF_TEXELS = (3, 3, 3)
+"""A brick of the finest level, in the atlas of colours and in that of normals."""
 ATLAS_SIDES_LOG2 = (5, 6, 7)
 """Bricks a row of the atlas, as powers of two, the smallest that fits is taken."""
 TEXTURE_3D_MAX = 2048
@@ -37,9 +39,11 @@ class Capacity:
 
     def nbytes(self) -> int:
         """Bytes of the pools that grow with it, the transient fragment queue not counted."""
-        bricks = self.bricks * (_struct_bytes("Brick") + 4 * math.prod(BRICK_TEXELS))
+        sided = self.interior * 4 * math.prod(SIDED_TEXELS)
+        finest = (self.bricks - self.interior) * 2 * 4 * math.prod(LEAF_TEXELS)
         leaves = self.leaves * 8 * (_struct_bytes("VoxelAttributes") + 8)
-        return bricks + leaves + self.interior * 8 * 6 * 8 + self.tiles * 8 * _struct_bytes("Node")
+        nodes = self.tiles * 8 * _struct_bytes("Node") + self.bricks * _struct_bytes("Brick")
+        return sided + finest + leaves + nodes
 
 
 @dataclass(frozen=True)
@@ -80,20 +84,30 @@ def _struct_bytes(name: str) -> int:
     return int(layouts().struct(name).itemsize)
 
 
-def atlas_side_log2(bricks: int) -> int:
-    """Bricks a row of the smallest atlas that holds so many, as a power of two."""
-    layers_max = TEXTURE_3D_MAX // BRICK_TEXELS[2]
-    for side in ATLAS_SIDES_LOG2:
-        if bricks <= layers_max << (2 * side):
-            return side
-    raise ValueError(f"{bricks} bricks are more than an atlas can hold")
+@dataclass(frozen=True)
+class Atlas:
+    """How bricks stand in a 3D texture: 2^side_log2 a row, as many rows a layer."""
 
-
-def atlas_size(bricks: int, side_log2: int) -> tuple[int, int, int]:
+    side_log2: int
+    size: tuple[int, int, int]
     """(width, height, depth) in texels."""
-    side = 1 << side_log2
-    layers = -(-bricks // (side * side))
-    return side * BRICK_TEXELS[0], side * BRICK_TEXELS[1], layers * BRICK_TEXELS[2]
+
+    @classmethod
+    def fit(cls, bricks: int, brick_texels: tuple[int, int, int]) -> Atlas:
+        """The smallest that holds so many bricks. Raises ValueError where none can."""
+        for side_log2 in ATLAS_SIDES_LOG2:
+            side = 1 << side_log2
+            layers = -(-max(bricks, 1) // (side * side))
+            width, height, depth = brick_texels
+            if layers * depth <= TEXTURE_3D_MAX:
+                return cls(side_log2, (side * width, side * height, layers * depth))
+        raise ValueError(f"{bricks} bricks are more than an atlas can hold")
+
+    @property
+    def texel(self) -> tuple[float, float, float]:
+        """A texel's share of the texture along each axis."""
+        width, height, depth = self.size
+        return 1.0 / width, 1.0 / height, 1.0 / depth
 
 
 def _empty_state() -> np.ndarray[tuple[int, ...], np.dtype[np.void]]:
@@ -120,9 +134,10 @@ class Survey:
         )
         self.state = device.buffer("octree.state", _struct_bytes("OctreeState"), category=CATEGORY)
         self.empty_state = device.buffer("octree.empty_state", _empty_state(), category=CATEGORY)
-        self.params: dict[str, Block] = {"Octree": self._pack(ATLAS_SIDES_LOG2[0], (1.0, 1.0, 1.0))}
+        none = Atlas.fit(1, LEAF_TEXELS)
+        self.params: dict[str, Block] = {"Octree": self._pack(none, none)}
 
-    def _pack(self, atlas_side_log2: int, atlas_texel: tuple[float, ...]) -> Block:
+    def _pack(self, sided: Atlas, leaf: Atlas) -> Block:
         grid, capacity = self.grid, self.capacity
         fixed_point = ACCUMULATOR_MAX / self.max_emission if self.max_emission > 0.0 else 0.0
         return pack(
@@ -135,13 +150,15 @@ class Survey:
             voxel_m=grid.voxel_m,
             fixed_point=fixed_point,
             block_count=grid.block_count,
-            atlas_side_log2=atlas_side_log2,
+            atlas_side_log2=sided.side_log2,
+            leaf_atlas_side_log2=leaf.side_log2,
             fragment_capacity=capacity.fragments,
             tile_capacity=capacity.tiles,
             brick_capacity=capacity.bricks,
             leaf_capacity=capacity.leaves,
             interior_capacity=capacity.interior,
-            atlas_texel=atlas_texel,
+            atlas_texel=sided.texel,
+            leaf_atlas_texel=leaf.texel,
             ambient=(0.0, 0.0, 0.0),
         )
 
@@ -165,15 +182,25 @@ class Octree(Survey):
         attribute_bytes = 8 * _struct_bytes("VoxelAttributes")
         self.attributes = pool("attributes", capacity.leaves * attribute_bytes)
         self.radiance = pool("radiance", capacity.leaves * 8 * 8)
-        self.sided = pool("sided", capacity.interior * 8 * 6 * 8)
-        side = atlas_side_log2(capacity.bricks)
-        size = atlas_size(capacity.bricks, side)
-        self.atlas = device.texture("octree.atlas", size, RGBA8, category=CATEGORY)
-        self.params = {"Octree": self._pack(side, tuple(1.0 / texels for texels in size))}
+        sided = Atlas.fit(capacity.interior, SIDED_TEXELS)
+        leaf = Atlas.fit(capacity.bricks - capacity.interior, LEAF_TEXELS)
+
+        def atlas(name: str, place: Atlas, format: Format) -> Texture:
+            return device.texture(f"octree.{name}", place.size, format, category=CATEGORY)
+
+        self.atlas = atlas("atlas", sided, RGBA8)
+        self.leaf_colors = atlas("leaf_colors", leaf, RGBA8)
+        self.leaf_normals = atlas("leaf_normals", leaf, RGBA8_SNORM)
+        self.params = {"Octree": self._pack(sided, leaf)}
 
     def tracing_reads(self) -> dict[str, Ref]:
         """What lib/cone.glsl binds."""
-        return {"Nodes": self.nodes, "u_brick_atlas": Sampled(self.atlas, filter="linear")}
+        return {
+            "Nodes": self.nodes,
+            "u_brick_atlas": Sampled(self.atlas, filter="linear"),
+            "u_leaf_colors": Sampled(self.leaf_colors, filter="linear"),
+            "u_leaf_normals": Sampled(self.leaf_normals, filter="linear"),
+        }
 
     def voxel_reads(self) -> dict[str, Ref]:
         """What lib/voxel.glsl binds, but for the nodes."""
@@ -187,6 +214,7 @@ class Octree(Survey):
     def release(self) -> None:
         """Free every pool."""
         super().release()
-        for pool in (self.nodes, self.bricks, self.attributes, self.radiance, self.sided):
+        for pool in (self.nodes, self.bricks, self.attributes, self.radiance):
             pool.release()
-        self.atlas.release()
+        for atlas in (self.atlas, self.leaf_colors, self.leaf_normals):
+            atlas.release()

@@ -1,0 +1,38 @@
+// Writes the 3x3x3 colours and normals of each brick of the finest level. Encoding: compress.comp.
+
+#include "lib/brick_points.glsl"
+#include "lib/brick_atlas.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(std430) buffer NodeWords { Node node_words[]; };
+layout(rgba8) writeonly uniform image3D u_colors;
+layout(rgba8_snorm) writeonly uniform image3D u_normals;
+
+void main() {
+    uint slot = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * BRICK_GROUP;
+    uint brick = octree_state.interior_count + slot;
+    if (brick >= octree_state.brick_count) return;
+    BrickPoints points = brick_points(brick);
+    float maximum = 0.0;
+    for (uint left = points.occupied; left != 0u; left &= left - 1u) {
+        uint voxel;
+        uint owner = owner_of_point(points, texel_of_point(uint(findLSB(left))), voxel);
+        maximum = max(maximum, largest(unpack_half4(radiance[leaf_slot(owner) * BRICK_VOXELS + voxel]).rgb));
+    }
+    uint code = scale_code(maximum);
+    float inverse_scale = inverse_scale_of(code);
+    node_words[bricks[brick].node & BRICK_NODE_MASK].brick = (brick + 1u) | (code << NODE_SCALE_SHIFT);
+
+    // The atlases were cleared: points without anything stay as they are.
+    ivec3 base = leaf_texel(slot);
+    for (uint left = points.occupied; left != 0u; left &= left - 1u) {
+        uvec3 texel = texel_of_point(uint(findLSB(left)));
+        uint voxel;
+        uint index = leaf_slot(owner_of_point(points, texel, voxel)) * BRICK_VOXELS + voxel;
+        vec4 value = unpack_half4(radiance[index]);
+        vec3 normal = unpackSnorm4x8(attributes[index].normal).xyz;
+        imageStore(u_colors, base + ivec3(texel), vec4(value.rgb * inverse_scale, value.a));
+        imageStore(u_normals, base + ivec3(texel), vec4(normal * value.a, 0.0));
+    }
+}
