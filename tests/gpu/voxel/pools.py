@@ -106,46 +106,89 @@ class Pools:
         return np.where(inside[:, 0], self.brick[level][x, y, z], ABSENT)
 
 
-def read_texels(stage: Stage) -> Array:
-    """(B, 6, 3, 3, 3, 4) uint8 codes of every brick's texels by [side, z, y, x]."""
-    bricks = stage.counts.bricks
+def read_sided(stage: Stage) -> Array:
+    """(I, 3, 3, 3, 24) uint8 codes of the bricks above the finest level by [z, y, x, channel].
+
+    Channels, for each of six sides: premultiplied colour, opacity.
+    """
     body = """
         int b = index / 162, side = (index / 27) % 6, i = index % 27;
         ivec3 texel = ivec3(i % 3, (i / 3) % 3, i / 9 + 3 * side);
         result = texelFetch(u_brick_atlas, brick_texel(uint(b)) + texel, 0) * 255.0;
     """
-    codes = run_glsl(
+    bricks = stage.counts.interior
+    codes = _run(stage, body, bricks * 162).reshape(bricks, 6, 3, 3, 3, 4)
+    return np.moveaxis(codes, 1, 4).reshape(bricks, 3, 3, 3, 24).astype(np.uint8)
+
+
+def read_leaves(stage: Stage) -> Array:
+    """(L, 3, 3, 3, 7) int16 codes of the finest level's bricks by [z, y, x, channel].
+
+    Channels: premultiplied colour, opacity (0..255); normal times opacity (-127..127).
+    """
+    body = """
+        int i = index % 27;
+        ivec3 at = leaf_texel(uint(index / 27)) + ivec3(i % 3, (i / 3) % 3, i / 9);
+        result = {};
+    """
+    bricks = stage.counts.bricks - stage.counts.interior
+    parts = [
+        _run(stage, body.format(value), bricks * 27)
+        for value in (
+            "texelFetch(u_leaf_colors, at, 0) * 255.0",
+            "texelFetch(u_leaf_normals, at, 0) * 127.0",
+        )
+    ]
+    codes = np.concatenate([parts[0], parts[1][:, :3]], axis=1)
+    return codes.reshape(bricks, 3, 3, 3, 7).astype(np.int16)
+
+
+def _run(stage: Stage, body: str, count: int) -> Array:
+    values = run_glsl(
         stage.device,
         ["lib/svo_lookup.glsl"],
         body,
         output="vec4",
-        count=bricks * 162,
+        count=count,
         reads=stage.octree.tracing_reads(),
         params=stage.octree.params,
     )
-    return np.asarray(np.rint(codes), np.uint8).reshape(bricks, 6, 3, 3, 3, 4)
+    return np.asarray(np.rint(values))
 
 
-def read_hdr(stage: Stage) -> Array:
-    """(B, 8, 6, 4) float32 HDR values of every brick's own voxels by [voxel, side]."""
-    bricks = stage.counts.bricks
-    body = """
-        uint b = uint(index) / 24u, voxel = (uint(index) / 3u) % 8u, axis = uint(index) % 3u;
-        AxisVoxel v = brick_voxel(b, voxel, axis);
-        values[index * 2] = v.plus_side;
-        values[index * 2 + 1] = v.minus_side;
-        result = 0.0;
+def leaf_values(stage: Stage) -> tuple[Array, Array]:
+    """(S, 8, 4) premultiplied radiance and opacity, (S, 8, 3) mean normals, by slot and voxel.
+
+    Slots count the bricks of the levels that may hold leaves.
     """
-    values = stage.device.buffer("values", bricks * 48 * 16)
-    run_glsl(
-        stage.device,
-        ["lib/sided_voxel.glsl"],
-        body,
-        count=bricks * 24,
-        functions="layout(std430) writeonly buffer Values { vec4 values[]; };",
-        reads={**stage.voxel_reads(), "Values": values},
-        params=stage.octree.params,
-    )
-    result = values.read(np.float32).reshape(bricks, 8, 6, 4).copy()
-    values.release()
-    return result
+    leaves = stage.counts.leaves
+    radiance = stage.octree.radiance.read(np.float16, leaves * 32).astype(np.float64)
+    words = stage.octree.attributes.read(layouts().struct("VoxelAttributes"), leaves * 8)
+    normal = words["normal"].copy().view(np.int8).reshape(leaves, 8, 4)[..., :3] / 127.0
+    return radiance.reshape(leaves, 8, 4), np.maximum(normal, -1.0)
+
+
+def sided_values(stage: Stage, pools: Pools) -> Array:
+    """(I, 8, 6, 4) HDR values of every brick above the finest level by [brick, voxel, side].
+
+    Leaves of coarser regions derive theirs from radiance and normal.
+    """
+    values = stage.sided[: stage.counts.interior].copy()
+    leaves = np.flatnonzero(pools.is_leaf[: len(values)])
+    if len(leaves) == 0:
+        return values
+    first = stage.state["level_first"][stage.own_grid.coarsest_leaf]
+    voxels = ((leaves - first)[:, None] * 8 + np.arange(8)).ravel()
+    for axis in range(3):
+        for k, side in enumerate(("plus_side", "minus_side")):
+            got = run_glsl(
+                stage.device,
+                ["lib/voxel.glsl"],
+                f"leaf_voxel(v, {axis}u).{side}",
+                {"v": voxels.astype(np.uint32)},
+                "vec4",
+                reads={**stage.octree.voxel_reads(), "Nodes": stage.octree.nodes},
+                params=stage.octree.params,
+            )
+            values[leaves, :, 2 * axis + k] = got.reshape(-1, 8, 4)
+    return values

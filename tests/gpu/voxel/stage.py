@@ -11,7 +11,7 @@ import numpy.typing as npt
 from elemental.core.layout import layouts
 from elemental.gpu.device import Device
 from elemental.gpu.graph import Graph
-from elemental.gpu.refs import BufferHandle, Ref
+from elemental.gpu.refs import BufferHandle
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.shadow import ShadowMaps, update_shadows
 from elemental.passes.shadow_plan import ShadowSettings
@@ -85,7 +85,10 @@ class Lit:
 
 
 class Stage(Lit):
-    """An octree that was built from a scene and lit by it. `fragments` (F,) is the queue.
+    """An octree that was built from a scene and lit by it.
+
+    `fragments` (F,) is the queue; `sided` (I, 8, 6, 4) the filtered HDR values of the bricks above
+    the finest level by [brick, voxel, side].
 
     ``prepare`` sees the octree before anything is written to it; ``make_graph`` makes the frame.
     """
@@ -135,9 +138,13 @@ class Stage(Lit):
         g = self.begin()
         for bounce in range(bounces):
             light_voxels(g, self.octree, self.shadows, self.sky, gather=bounce > 0)
-            filter_levels(g, self.octree)
-            compress(g, self.octree)
+            sided = filter_levels(g, self.octree)
+            compress(g, self.octree, sided)
+        g.keep(sided)
         g.execute()
+        assert sided.physical is not None
+        values = sided.physical.read(np.float16, sided.nbytes // 2)
+        self.sided = values.reshape(-1, 8, 6, 4).astype(np.float64)
 
     @property
     def counts(self) -> Counts:
@@ -147,11 +154,6 @@ class Stage(Lit):
     def state(self) -> Array:
         """The OctreeState."""
         return np.asarray(self.octree.state.read(layouts().struct("OctreeState"), 1)[0])
-
-    def voxel_reads(self) -> dict[str, Ref]:
-        """What lib/sided_voxel.glsl binds."""
-        octree = self.octree
-        return {**octree.voxel_reads(), "Nodes": octree.nodes, "Sided": octree.sided}
 
     @property
     def fragment_points(self) -> Array:

@@ -1,5 +1,9 @@
 # GI-03
-"""The pools by node index, and the bricks' borders against their neighbours' own voxels."""
+"""The pools by node index, and the bricks' borders against their neighbours' own voxels.
+
+A brick holds 3x3x3 texels: its own 2x2x2 and a border on the + sides. Above the finest level a
+texel has a colour for each of six sides, on the finest one colour and one normal.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +16,8 @@ import pytest
 
 from elemental.passes.voxel.grid import REGION_SIDE
 from gpu.rig import vector
-from gpu.voxel.pools import ABSENT, Pools, read_hdr, read_texels
+from gpu.voxel.digest import contents
+from gpu.voxel.pools import ABSENT, Pools, leaf_values, read_leaves, read_sided, sided_values
 from gpu.voxel.scenes import grid_with, jumble
 from gpu.voxel.stage import MakeStage, Stage
 
@@ -20,8 +25,11 @@ Array = npt.NDArray[Any]
 
 NEIGHBOURS = [np.array(o) for o in product((-1, 0, 1), repeat=3) if any(o)]
 TEXELS = np.array(list(product(range(3), repeat=3)))
+BITS = np.array([1, 2, 4])
 ROUNDING = 0.5 + 2e-3
 """Of a code, with what float32 may lose on the way to it."""
+COLORS = np.arange(24) % 4 < 3
+"""Which channels of a six-sided texel the multiplier scales."""
 
 
 def span(offset: int) -> tuple[slice, slice]:
@@ -32,21 +40,26 @@ def span(offset: int) -> tuple[slice, slice]:
 
 @pytest.mark.parametrize("offset", NEIGHBOURS, ids=lambda o: "".join("-0+"[k + 1] for k in o))
 def test_neighbours_agree_to_the_bit(jumbled: Stage, offset: Array) -> None:
-    """Over every face, edge and corner: equal codes of opacity, and of colour too where both bricks
-    have the same multiplier."""
-    pools, texels = Pools.read(jumbled), read_texels(jumbled)
+    """Over every face, edge and corner: equal codes of opacity and normal, and of colour too where
+    both bricks have the same multiplier."""
+    pools, finest = Pools.read(jumbled), jumbled.own_grid.leaf_level
+    kinds = (
+        (range(finest), read_sided(jumbled), 0, ~COLORS),
+        ([finest], read_leaves(jumbled), jumbled.counts.interior, np.arange(7) >= 3),
+    )
     (ax, bx), (ay, by), (az, bz) = (span(int(k)) for k in offset)
-    compared = 0
-    for level in range(jumbled.own_grid.leaf_level + 1):
-        ours = np.flatnonzero(pools.level == level)
-        theirs = pools.brick_at(pools.cell[ours] + offset, level)
-        ours, theirs = ours[theirs != ABSENT], theirs[theirs != ABSENT]
-        mine, other = texels[ours][:, :, az, ay, ax], texels[theirs][:, :, bz, by, bx]
-        np.testing.assert_array_equal(mine[..., 3], other[..., 3])
-        same = pools.scale[ours] == pools.scale[theirs]
-        np.testing.assert_array_equal(mine[same], other[same])
-        compared += int(same.sum()) if level == jumbled.own_grid.leaf_level else 0
-    assert compared > 100
+    for levels, texels, first, unscaled in kinds:
+        compared = 0
+        for level in levels:
+            ours = np.flatnonzero(pools.level == level)
+            theirs = pools.brick_at(pools.cell[ours] + offset, level)
+            ours, theirs = ours[theirs != ABSENT], theirs[theirs != ABSENT]
+            mine, other = texels[ours - first][:, az, ay, ax], texels[theirs - first][:, bz, by, bx]
+            np.testing.assert_array_equal(mine[..., unscaled], other[..., unscaled])
+            same = pools.scale[ours] == pools.scale[theirs]
+            np.testing.assert_array_equal(mine[same], other[same])
+            compared += int((mine[same] > 0).any(axis=(1, 2, 3, 4)).sum())
+        assert compared > 100
 
 
 def lenders(stage: Stage, pools: Pools, texel: Array) -> tuple[Array, Array]:
@@ -56,39 +69,55 @@ def lenders(stage: Stage, pools: Pools, texel: Array) -> tuple[Array, Array]:
     """
     lender = np.full(len(pools.cell), ABSENT)
     voxel = np.zeros(len(pools.cell), np.int64)
-    bits = np.array([1, 2, 4])
     for level in range(stage.own_grid.leaf_level + 1):
         ours = np.flatnonzero(pools.level == level)
         points = 2 * pools.cell[ours] + texel
         found = pools.brick_at(points >> 1, level)
-        at = (points & 1) @ bits
+        at = (points & 1) @ BITS
         for above in range(1, level + 1):
             coarser = pools.brick_at(points >> (1 + above), level - above)
             lends = (found == ABSENT) & (coarser != ABSENT) & pools.is_leaf[coarser]
             found = np.where(lends, coarser, found)
-            at = np.where(lends, (points >> above & 1) @ bits, at)
+            at = np.where(lends, (points >> above & 1) @ BITS, at)
         lender[ours], voxel[ours] = found, at
     return lender, voxel
 
 
 def assert_borders(stage: Stage) -> int:
     """Every texel says what its lender says; the number of those lent by coarser leaves."""
-    pools, texels, hdr = Pools.read(stage), read_texels(stage), read_hdr(stage)
+    pools, interior = Pools.read(stage), stage.counts.interior
+    sided, leaves = read_sided(stage), read_leaves(stage)
+    hdr = sided_values(stage, pools)
+    radiance, normals = leaf_values(stage)
+    first_leaf = stage.state["level_first"][stage.own_grid.coarsest_leaf]
     lent = 0
     for texel in TEXELS:
         x, y, z = texel
-        codes = texels[:, :, z, y, x]
         lender, voxel = lenders(stage, pools, texel)
-        assert (codes[lender == ABSENT] == 0).all(), "an absent neighbour is empty"
-        ours = np.flatnonzero(lender != ABSENT)
-        value = hdr[lender[ours], voxel[ours]].astype(np.float64)
-        wanted = value * 255.0
-        wanted[..., :3] /= pools.scale[ours, None, None]
+        absent = lender == ABSENT
+        assert (sided[absent[:interior], z, y, x] == 0).all(), "an absent neighbour is empty"
+        assert (leaves[absent[interior:], z, y, x] == 0).all(), "an absent neighbour is empty"
+
+        ours = np.flatnonzero(~absent[:interior])
+        wanted = hdr[lender[ours], voxel[ours]].reshape(-1, 24) * 255.0
+        wanted[:, COLORS] /= pools.scale[ours, None]
         assert wanted.max() <= 255.0 + ROUNDING
-        assert np.abs(codes[ours] - wanted).max() <= ROUNDING, texel
-        coarser = pools.level[lender[ours]] < pools.level[ours]
+        assert np.abs(sided[ours, z, y, x] - wanted).max() <= ROUNDING, texel
+
+        ours = interior + np.flatnonzero(~absent[interior:])
+        slot = lender[ours] - first_leaf
+        value = radiance[slot, voxel[ours]]
+        wanted = value * 255.0
+        wanted[:, :3] /= pools.scale[ours, None]
+        tilted = normals[slot, voxel[ours]] * value[:, 3:] * 127.0
+        got = leaves[ours - interior, z, y, x]
+        assert np.abs(got - np.concatenate([wanted, tilted], axis=1)).max() <= ROUNDING, texel
+
+        found = np.flatnonzero(~absent)
+        coarser = pools.level[lender[found]] < pools.level[found]
         assert not (coarser & (texel < 2).all()).any()
-        lent += int((coarser & (value[..., 3] > 0).any(axis=1)).sum())
+        held = [leaves[b - interior, z, y, x, 3] if b >= interior else 0 for b in found[coarser]]
+        lent += int((np.array(held) > 0).sum())
     return lent
 
 
@@ -104,11 +133,11 @@ def test_a_coarser_neighbour_lends_its_nearest_voxel(stage: MakeStage) -> None:
 
 
 def test_lighting_anew_leaves_nothing_of_the_old_light(stage: MakeStage) -> None:
-    """The atlas after a second lighting is the first's to the bit."""
+    """A second lighting gives what the first gave, to the bit."""
     made = stage(jumble())
-    first = read_texels(made)
+    first = contents(made)
     made.light()
-    np.testing.assert_array_equal(read_texels(made), first)
+    assert contents(made) == first
 
 
 def test_pools_are_addressed_by_the_node(jumbled: Stage) -> None:
@@ -119,8 +148,8 @@ def test_pools_are_addressed_by_the_node(jumbled: Stage) -> None:
     held = jumbled.octree.attributes.read(np.uint32).reshape(-1, 8, 4)[: counts.leaves, :, 3]
     points = jumbled.fragment_points + jumbled.own_grid.resolution // 2
     brick = pools.brick_at(points >> 1, jumbled.own_grid.leaf_level)
-    slot, voxel = brick - leaves[0], (points & 1) @ np.array([1, 2, 4])
+    slot, voxel = brick - leaves[0], (points & 1) @ BITS
     wanted = np.bincount(slot * 8 + voxel, minlength=held.size).reshape(held.shape)
     np.testing.assert_array_equal(held, wanted)
-    radiance = jumbled.octree.radiance.read(np.float16).reshape(-1, 8, 4)[: counts.leaves]
+    radiance, _ = leaf_values(jumbled)
     np.testing.assert_array_equal(radiance[..., 3] > 0, held > 0)

@@ -1,0 +1,106 @@
+# GI-02 GI-05
+"""A build depends on the scene alone: not on the order of fragments or of threads."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from elemental.core.layout import layouts
+from elemental.gpu.device import Device
+from elemental.passes.voxel.build import build
+from gpu.voxel.digest import contents, digest
+from gpu.voxel.pools import Pools
+from gpu.voxel.scenes import jumble
+from gpu.voxel.stage import MakeStage, Stage
+
+Array = npt.NDArray[Any]
+ROOT = Path(__file__).parents[3]
+
+
+def test_two_builds_are_equal_to_the_bit(stage: MakeStage, jumbled: Stage) -> None:
+    assert contents(stage(jumble())) == contents(jumbled)
+
+
+def test_a_build_does_not_depend_on_the_number_of_threads(device: Device, jumbled: Stage) -> None:
+    """llvmpipe with one thread runs everything in order."""
+    path = os.pathsep.join(str(ROOT / name) for name in ("app", "tests"))
+    result = subprocess.run(
+        [sys.executable, "-m", "gpu.voxel.digest"],
+        env=os.environ | {"PYTHONPATH": path, "LP_NUM_THREADS": "1"},
+        capture_output=True,
+        text=True,
+        timeout=100,
+        check=True,
+    )
+    assert result.stdout.strip() == digest(jumbled)
+
+
+def test_the_order_of_fragments_does_not_matter(device: Device, stage: MakeStage) -> None:
+    made = stage(jumble())
+    expected = contents(made)
+    shuffled = np.random.default_rng(7).permutation(made.fragments)
+    assert not np.array_equal(shuffled, made.fragments)
+    queue = device.buffer("shuffled", shuffled)
+    g = device.begin_frame()
+    build(g, made.octree, queue)
+    g.execute()
+    made.light()
+    assert contents(made) == expected
+    queue.release()
+
+
+def rgb9e5(codes: Array) -> Array:
+    """(N, 3) radiance of RGB9E5 words."""
+    mantissa = np.stack([codes & 511, codes >> 9 & 511, codes >> 18 & 511], axis=-1)
+    return mantissa * np.exp2((codes >> 27).astype(np.float64) - 24)[:, None]
+
+
+def snorm8(codes: Array) -> Array:
+    """(N, 3) of the three lower bytes."""
+    return np.maximum(codes.view(np.int8).reshape(-1, 4)[:, :3] / 127.0, -1.0)
+
+
+def averages(keys: Array, values: Array, weights: Array | None = None) -> Array:
+    """Mean of ``values`` (F, k) over equal ``keys`` (F,), by ascending key."""
+    _, place = np.unique(keys, return_inverse=True)
+    weight = np.ones(len(keys)) if weights is None else weights
+    sums = [np.bincount(place, column * weight) for column in values.T.astype(np.float64)]
+    return np.stack(sums, axis=-1) / np.maximum(np.bincount(place, weight), 1e-30)[:, None]
+
+
+def test_attributes_average_all_fragments_of_a_voxel(jumbled: Stage) -> None:
+    """Albedo, opacity and normal over all; emitted light over the fragments that emit."""
+    fragments, pools, grid = jumbled.fragments, Pools.read(jumbled), jumbled.own_grid
+    points = jumbled.fragment_points + grid.resolution // 2
+    brick = pools.brick_at(points >> 1, grid.leaf_level)
+    first = int(jumbled.state["level_first"][grid.leaf_level])
+    slots = (brick - first) * 8 + (points & 1) @ np.array([1, 2, 4])
+    struct = layouts().struct("VoxelAttributes")
+    held = jumbled.octree.attributes.read(struct, jumbled.counts.leaves * 8)[np.unique(slots)]
+    assert held["fragments"].max() > 2
+
+    albedo = averages(slots, fragments["albedo"].copy().view(np.uint8).reshape(-1, 4))
+    got = held["albedo"].copy().view(np.uint8).reshape(-1, 4)
+    assert np.abs(got - albedo).max() <= 0.5 + 1e-3
+
+    normals = snorm8(fragments["normal"].copy())
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    # Each is rounded to 1/127 before it is added, and the mean once more.
+    got = snorm8(held["normal"].copy())
+    assert np.abs(got - averages(slots, normals)).max() <= 1.01 / 127
+
+    emitted = rgb9e5(fragments["emissive"])
+    emits = (emitted.max(axis=1) > 0).astype(float)
+    wanted = averages(slots, emitted, emits)
+    got = rgb9e5(held["emissive"])
+    brightest = emitted.max()
+    bound = wanted.max(axis=1, keepdims=True) / 512 + brightest / 65535
+    assert (np.abs(got - wanted) <= bound).all()
+    assert got.max() > 0.99 * brightest
