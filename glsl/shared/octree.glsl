@@ -79,7 +79,7 @@ struct OctreeState {
     DispatchArgs interior_bricks;      // a thread a brick above the finest level
     DispatchArgs leaf_bricks;          // a thread a brick of the finest level
     DispatchArgs leaf_voxels;          // a thread a voxel, over bricks of the levels that may hold leaves
-    DispatchArgs level_axes[10];       // a thread an axis of a voxel of this level
+    DispatchArgs level_voxels[10];     // a thread an occupied voxel of this level, above the finest
     uint level_first[12];              // first brick of each level; [levels] = brick_count
 };
 

@@ -7,6 +7,8 @@
 
 layout(local_size_x = 64) in;
 
+layout(std430) readonly buffer FilterList { uint filter_list[]; };
+
 // Half of a slab: two halves in a row are as opaque as the whole.
 vec4 half_slab(vec4 slab) {
     float opacity = 1.0 - sqrt(max(1.0 - slab.a, 0.0));
@@ -14,6 +16,13 @@ vec4 half_slab(vec4 slab) {
 }
 
 vec4 over(vec4 front, vec4 back) { return front + (1.0 - front.a) * back; }
+
+// The 2x2x2 cells of the next finer level around a voxel.
+struct Cells {
+    uint brick[8];
+    int reached[8];
+    uint points[8];
+};
 
 // The brick of a cell of the next finer level. The node's own children need no descent.
 uint finer_brick(uvec3 own_cell, uint own_child, ivec3 cell, int level, out int reached) {
@@ -23,32 +32,8 @@ uint finer_brick(uvec3 own_cell, uint own_child, ivec3 cell, int level, out int 
     return node_has_brick(child) ? node_brick(child) : NO_BRICK;
 }
 
-// A thread an axis of a voxel: slab by slab along it, so that only two running sums are kept.
-void main() {
-    uint index = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * BRICK_GROUP;
-    int level = u_level.level;
-    uint voxel = index / 3u;
-    uint axis = index - voxel * 3u;
-    uint brick = octree_state.level_first[level] + voxel / BRICK_VOXELS;
-    if (brick >= octree_state.level_first[level + 1]) return;
-    Brick place = bricks[brick];
-    if ((place.cell & BRICK_LEAF) != 0u) return;
-
-    uint octant = voxel % BRICK_VOXELS;
-    uvec3 own_cell = unpack_cell(place.cell);
-    uint own_child = nodes[place.node & BRICK_NODE_MASK].child;
-    ivec3 point = ivec3(own_cell * 2u + (uvec3(octant, octant >> 1, octant >> 2) & 1u));
-    ivec3 centre = point * 2;  // on the finer lattice; its cells there are point - 1 and point
-    int finer = level + 1;
-    uint cell_brick[8];
-    int cell_level[8];
-    uint cell_points[8];
-    for (int i = 0; i < 8; ++i) {
-        ivec3 cell = point - 1 + (ivec3(i, i >> 1, i >> 2) & 1);
-        cell_brick[i] = finer_brick(own_cell, own_child, cell, finer, cell_level[i]);
-        cell_points[i] = points_of_cell(cell_brick[i], cell_level[i], finer);
-    }
-
+// One axis of a voxel, slab by slab along it, so that only two running sums are kept.
+void filter_axis(uint voxel, uint axis, ivec3 centre, int finer, Cells cells) {
     vec4 plus_side = vec4(0.0);   // composited towards a viewer on the + side
     vec4 minus_side = vec4(0.0);
     for (int along = -1; along <= 1; ++along) {
@@ -61,8 +46,8 @@ void main() {
             ivec3 in_cell = ivec3(greaterThanEqual(offset, ivec3(0)));
             int cell = in_cell.x | (in_cell.y << 1) | (in_cell.z << 2);
             uint bit = voxel_of_point(uvec3(offset));
-            if ((cell_points[cell] & (1u << bit)) == 0u) continue;
-            AxisVoxel v = axis_voxel_at(cell_brick[cell], cell_level[cell], uvec3(centre + offset), finer, axis);
+            if ((cells.points[cell] & (1u << bit)) == 0u) continue;
+            AxisVoxel v = axis_voxel_at(cells.brick[cell], cells.reached[cell], uvec3(centre + offset), finer, axis);
             vec2 weight = vec2(0.5) - 0.25 * vec2(abs(across));
             plus_slab += weight.x * weight.y * v.plus_side;
             minus_slab += weight.x * weight.y * v.minus_side;
@@ -74,6 +59,26 @@ void main() {
         plus_side = over(plus_slab, plus_side);
         minus_side = over(minus_side, minus_slab);
     }
-    sided[sided_index(brick, octant, axis * 2u)] = pack_half4(plus_side);
-    sided[sided_index(brick, octant, axis * 2u + 1u)] = pack_half4(minus_side);
+    sided[voxel * BRICK_DIRECTIONS + axis * 2u] = pack_half4(plus_side);
+    sided[voxel * BRICK_DIRECTIONS + axis * 2u + 1u] = pack_half4(minus_side);
+}
+
+void main() {
+    uint item = gl_GlobalInvocationID.x;
+    int level = u_level.level;
+    if (item >= octree_state.level_voxels[level].threads) return;
+    uint voxel = filter_list[octree_state.level_first[level] * BRICK_VOXELS + item];
+    Brick place = bricks[voxel / BRICK_VOXELS];
+    uint octant = voxel % BRICK_VOXELS;
+    uvec3 own_cell = unpack_cell(place.cell);
+    uint own_child = nodes[place.node & BRICK_NODE_MASK].child;
+    ivec3 point = ivec3(own_cell * 2u + (uvec3(octant, octant >> 1, octant >> 2) & 1u));
+    int finer = level + 1;  // whose lattice has this voxel at 2 point, between its cells point - 1 and point
+    Cells cells;
+    for (int i = 0; i < 8; ++i) {
+        ivec3 cell = point - 1 + (ivec3(i, i >> 1, i >> 2) & 1);
+        cells.brick[i] = finer_brick(own_cell, own_child, cell, finer, cells.reached[i]);
+        cells.points[i] = points_of_cell(cells.brick[i], cells.reached[i], finer);
+    }
+    for (uint axis = 0u; axis < 3u; ++axis) filter_axis(voxel, axis, point * 2, finer, cells);
 }

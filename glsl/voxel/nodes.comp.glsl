@@ -9,7 +9,10 @@ layout(local_size_x = 64) in;
 
 layout(std430) readonly buffer NodeBits { uint node_words[]; };
 layout(std430) readonly buffer Points { uint point_words[]; };
-layout(std430) readonly buffer State { OctreeState octree_state; };
+layout(std430) buffer State { OctreeState octree_state; };
+// Brick * 8 + octant of the occupied voxels above the finest level, each level's from its first
+// brick * 8 on, in no order.
+layout(std430) writeonly buffer FilterList { uint filter_list[]; };
 layout(std430) writeonly buffer Nodes { Node nodes[]; };
 layout(std430) writeonly buffer Bricks { Brick bricks[]; };
 
@@ -54,6 +57,19 @@ uint own_points(int level, uvec3 cell) {
     return (point_words[cell_word(level + 1, code)] >> (code & 31u)) & 0xffu;
 }
 
+// Queues the occupied voxels of a brick for filtering.
+void list_voxels(uint brick, int level, uint points) {
+    uint count = uint(bitCount(points));
+    if (count == 0u) return;
+    uint at = atomicAdd(octree_state.level_voxels[level].threads, count);
+    atomicMax(octree_state.level_voxels[level].x, (at + count - 1u) / BRICK_GROUP + 1u);
+    uint first = octree_state.level_first[level] * BRICK_VOXELS;
+    for (; points != 0u; points &= points - 1u) {
+        filter_list[first + at] = brick * BRICK_VOXELS + uint(findLSB(points));
+        ++at;
+    }
+}
+
 void write_node(uint index, int level, uvec3 cell, bool exists, uint brick) {
     Node node = Node(0u, 0u);
     if (exists && brick < octree_state.brick_count) {
@@ -66,7 +82,9 @@ void write_node(uint index, int level, uvec3 cell, bool exists, uint brick) {
         node.brick = brick + 1u;
         // Filtered points beside a coarser region hold what that lends them.
         bool lent = !leaf && u_octree.coarsest_leaf < u_octree.leaf_level;
-        uint place = index | ((lent ? 0xffu : own_points(level, cell)) << BRICK_POINTS_SHIFT);
+        uint points = lent ? 0xffu : own_points(level, cell);
+        if (!leaf) list_voxels(brick, level, points);
+        uint place = index | (points << BRICK_POINTS_SHIFT);
         bricks[brick] = Brick(pack_cell(cell, level, leaf), place);
     } else {
         node.child = uint(empty_level(level, cell));

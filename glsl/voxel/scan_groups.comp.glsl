@@ -73,7 +73,6 @@ void main() {
         octree_state.level_first[level] = min(bricks_before_level(level, all.x), kept);
     }
     for (int level = 0; level < levels; ++level) {
-        uint count = octree_state.level_first[level + 1] - octree_state.level_first[level];
-        octree_state.level_axes[level] = dispatch_args(count * BRICK_VOXELS * 3u, BRICK_GROUP);
+        octree_state.level_voxels[level] = DispatchArgs(0u, 1u, 1u, 0u);  // filled by nodes.comp
     }
 }

@@ -97,8 +97,13 @@ def build(g: Graph, octree: Octree, fragments: AnyBuffer) -> None:
     found = find_nodes(g, octree, fragments)
     g.compute(
         NODES,
-        reads={**found, "State": octree.state, "Regions": octree.regions},
-        writes={"Nodes": octree.nodes, "Bricks": octree.bricks},
+        reads={**found, "Regions": octree.regions},
+        writes={
+            "State": octree.state,
+            "Nodes": octree.nodes,
+            "Bricks": octree.bricks,
+            "FilterList": octree.filter_list,
+        },
         params=octree.params,
         threads=octree.grid.block_count,
     )

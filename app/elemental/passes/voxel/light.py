@@ -56,10 +56,14 @@ def filter_levels(g: Graph, octree: Octree) -> BufferHandle:
         g.compute(
             FILTER,
             f"filter.{level}",
-            reads={**octree.voxel_reads(), "Nodes": octree.nodes},
+            reads={
+                **octree.voxel_reads(),
+                "Nodes": octree.nodes,
+                "FilterList": octree.filter_list,
+            },
             writes={"Sided": sided},
             params={**octree.params, "OctreeLevel": level_params(level)},
-            indirect=(octree.state, state_offset("level_axes", level)),
+            indirect=(octree.state, state_offset("level_voxels", level)),
         )
     return sided
 

@@ -39,7 +39,7 @@ class Capacity:
 
     def nbytes(self) -> int:
         """Bytes of the pools that grow with it, the transient fragment queue not counted."""
-        sided = self.interior * 4 * math.prod(SIDED_TEXELS)
+        sided = self.interior * 4 * (math.prod(SIDED_TEXELS) + 8)
         finest = (self.bricks - self.interior) * 2 * 4 * math.prod(LEAF_TEXELS)
         leaves = self.leaves * 8 * (_struct_bytes("VoxelAttributes") + 8)
         nodes = self.tiles * 8 * _struct_bytes("Node") + self.bricks * _struct_bytes("Brick")
@@ -179,6 +179,7 @@ class Octree(Survey):
 
         self.nodes = pool("nodes", (grid.dense_nodes + capacity.tiles * 8) * _struct_bytes("Node"))
         self.bricks = pool("bricks", capacity.bricks * _struct_bytes("Brick"))
+        self.filter_list = pool("filter_list", capacity.interior * 8 * 4)
         attribute_bytes = 8 * _struct_bytes("VoxelAttributes")
         self.attributes = pool("attributes", capacity.leaves * attribute_bytes)
         self.radiance = pool("radiance", capacity.leaves * 8 * 8)
@@ -214,7 +215,7 @@ class Octree(Survey):
     def release(self) -> None:
         """Free every pool."""
         super().release()
-        for pool in (self.nodes, self.bricks, self.attributes, self.radiance):
+        for pool in (self.nodes, self.bricks, self.filter_list, self.attributes, self.radiance):
             pool.release()
         for atlas in (self.atlas, self.leaf_colors, self.leaf_normals):
             atlas.release()
