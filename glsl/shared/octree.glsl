@@ -75,6 +75,8 @@ struct OctreeState {
     uint brick_dropped;
     uint leaf_count;                   // bricks of the levels that may hold leaves
     uint interior_count;               // bricks above the finest level
+    uint leaf_asked;                   // what leaf_count and interior_count would be in larger pools
+    uint interior_asked;
     DispatchArgs fragments;
     DispatchArgs interior_bricks;      // a thread a brick above the finest level
     DispatchArgs leaf_bricks;          // a thread a brick of the finest level

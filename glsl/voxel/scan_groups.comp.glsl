@@ -5,6 +5,7 @@
 
 layout(local_size_x = 256) in;
 
+layout(std430) readonly buffer NodeBits { uint node_words[]; };
 layout(std430) readonly buffer Ranks { uvec2 ranks[]; };
 layout(std430) buffer GroupSums { uvec2 group_sums[]; };
 layout(std430) buffer State { OctreeState octree_state; };
@@ -18,11 +19,32 @@ DispatchArgs dispatch_args(uint threads, uint group) {
     return DispatchArgs(min(groups, row), max((groups + row - 1u) / row, 1u), 1u, threads);
 }
 
+uvec2 rank_of_block(uint block) { return ranks[block] + group_sums[block / SCAN_BLOCKS]; }
+
 // Bricks before the first block of a level's grid.
 uint bricks_before_level(int level, uint total) {
     uint block = grid_first_block(level);
-    if (block >= u_octree.block_count) return total;
-    return ranks[block].x + group_sums[block / SCAN_BLOCKS].x;
+    return block < u_octree.block_count ? rank_of_block(block).x : total;
+}
+
+// Bricks before those of a tile's nodes: tiles and bricks stand in the same order.
+uint bricks_before_tile(uint tile) {
+    uint block = grid_first_block(u_octree.top_level + 1);
+    uint end = u_octree.block_count;
+    while (end - block > 1u) {
+        uint middle = (block + end) / 2u;
+        if (rank_of_block(middle).y <= tile) block = middle;
+        else end = middle;
+    }
+    uvec2 bits = uvec2(node_words[block * 2u], node_words[block * 2u + 1u]);
+    uvec2 used = used_bytes(bits);
+    uvec2 rank = rank_of_block(block);
+    for (uint before = rank.y; before < tile; ++before) {
+        if (used.x != 0u) used.x &= used.x - 1u;
+        else used.y &= used.y - 1u;
+    }
+    uint first_bit = used.x != 0u ? uint(findLSB(used.x)) : 32u + uint(findLSB(used.y));
+    return rank.x + bit_count64(bits & bits_below(first_bit));
 }
 
 void main() {
@@ -59,13 +81,18 @@ void main() {
     if (kept > before_leaves && kept - before_leaves > u_octree.leaf_capacity) {
         kept = before_leaves + u_octree.leaf_capacity;
     }
+    uint finest_capacity = max(u_octree.brick_capacity, u_octree.interior_capacity) - u_octree.interior_capacity;
+    kept = min(kept, min(before_finest, u_octree.interior_capacity) + finest_capacity);
     if (before_finest > u_octree.interior_capacity) kept = min(kept, u_octree.interior_capacity);
+    if (all.y > u_octree.tile_capacity) kept = min(kept, bricks_before_tile(u_octree.tile_capacity));
     octree_state.brick_count = kept;
     octree_state.brick_dropped = all.x - kept;
     octree_state.tile_count = min(all.y, u_octree.tile_capacity);
     octree_state.tile_dropped = all.y - octree_state.tile_count;
     octree_state.leaf_count = kept - min(before_leaves, kept);
     octree_state.interior_count = min(before_finest, kept);
+    octree_state.leaf_asked = all.x - before_leaves;
+    octree_state.interior_asked = before_finest;
     octree_state.interior_bricks = dispatch_args(octree_state.interior_count, BRICK_GROUP);
     octree_state.leaf_bricks = dispatch_args(kept - octree_state.interior_count, BRICK_GROUP);
     octree_state.leaf_voxels = dispatch_args(octree_state.leaf_count * BRICK_VOXELS, BRICK_GROUP);

@@ -84,7 +84,7 @@ def find_nodes(g: Graph, octree: Survey, fragments: AnyBuffer) -> dict[str, Ref]
     )
     g.compute(
         SCAN_GROUPS,
-        reads={"Ranks": ranks},
+        reads={"NodeBits": node_bits, "Ranks": ranks},
         writes={"GroupSums": sums, "State": octree.state},
         params=octree.params,
         groups=1,

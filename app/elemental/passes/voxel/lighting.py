@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from elemental.passes.shadow import ShadowMaps
     from elemental.passes.sky import Sky
 
-NOTHING = Counts(0, 0, 0, 0, 0, 0, 0, 0)
+NOTHING = Counts(0, 0, 0, 0, 0, 0, 0, 0, 0, 0)
 
 
 class VoxelLighting:

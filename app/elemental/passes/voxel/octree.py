@@ -58,6 +58,8 @@ class Counts:
     bricks_dropped: int
     leaves: int
     interior: int
+    leaves_asked: int
+    interior_asked: int
 
     @classmethod
     def from_state(cls, raw: bytes) -> Counts:
@@ -72,6 +74,8 @@ class Counts:
             bricks_dropped=int(state["brick_dropped"]),
             leaves=int(state["leaf_count"]),
             interior=int(state["interior_count"]),
+            leaves_asked=int(state["leaf_asked"]),
+            interior_asked=int(state["interior_asked"]),
         )
 
     @property

@@ -59,7 +59,7 @@ def count(device: Device, scene: GpuScene, grid: Grid, area_m2: float) -> Counts
     expected = area_m2 / grid.voxel_m**2 * FRAGMENT_SLACK + 4 * grid.resolution
     fragments = int(min(max(expected, 1024.0), FRAGMENTS_MAX))
     while True:
-        unbounded = Capacity(fragments, UNBOUNDED, UNBOUNDED, UNBOUNDED, UNBOUNDED)
+        unbounded = Capacity(fragments, UNBOUNDED, UNBOUNDED, UNBOUNDED, UNBOUNDED // 2)
         survey = Survey(device, grid, unbounded, 0.0)
         g = device.begin_frame()
         find_nodes(g, survey, voxelize(g, scene, survey))
@@ -78,8 +78,8 @@ def capacity_for(counts: Counts, budget_bytes: int) -> Capacity:
         fragments=min(max(counts.fragments + counts.fragments_dropped, 1), FRAGMENTS_MAX),
         tiles=max(counts.tiles + counts.tiles_dropped, 1),
         bricks=max(counts.bricks + counts.bricks_dropped, 1),
-        leaves=max(counts.leaves + counts.bricks_dropped, 1),
-        interior=max(counts.interior, 1),
+        leaves=max(counts.leaves_asked, 1),
+        interior=max(counts.interior_asked, 1),
     )
     excess = max(0, wanted.nbytes() - budget_bytes)
     a_leaf = (
