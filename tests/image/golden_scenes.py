@@ -1,0 +1,110 @@
+"""The small scenes of the golden pictures, drawn through the whole frame at 64^3 voxels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from elemental.core import transforms
+from elemental.frame import Renderer
+from elemental.gpu.device import Device
+from elemental.scene.model import Camera, Environment, Light, Scene
+from elemental.settings import Settings
+from gpu.rig import at, material, scene, sun, vector
+from gpu.voxel.scenes import colored, glowing, part
+from shapes import box, sphere, torus
+
+SIZE = (128, 72)
+SETTINGS = {"gi.resolution": 64, "shadow.resolution": 512}
+
+
+def colored_room() -> Scene:
+    """A white room with a red and a green wall, lit by a lamp in its ceiling alone."""
+    wall = 0.1
+    return scene(
+        part(box((2, wall, 2)), 0, at(0, -1, 0)),
+        part(box((2, wall, 2)), 0, at(0, 1, 0)),
+        part(box((2, 2, wall)), 0, at(0, 0, -1)),
+        part(box((wall, 2, 2)), 1, at(-1, 0, 0)),
+        part(box((wall, 2, 2)), 2, at(1, 0, 0)),
+        part(box((0.7, 0.02, 0.7)), 3, at(0, 0.93, 0)),
+        part(box((0.5, 1.0, 0.5)), 0, at(-0.35, -0.45, -0.3)),
+        part(sphere(0.3), 0, at(0.4, -0.65, 0.2), smooth=True),
+        materials=[
+            colored(0.8, 0.8, 0.8),
+            colored(0.7, 0.05, 0.05),
+            colored(0.05, 0.6, 0.1),
+            glowing(12, 11, 9),
+        ],
+    )
+
+
+def sunlit_plaza() -> Scene:
+    """Sun and sky on rough and glossy bodies."""
+    made = scene(
+        part(box((4, 0.2, 4)), 0, at(0, -0.6, 0)),
+        part(sphere(0.5), 1, at(-0.6, 0, 0), smooth=True),
+        part(torus(0.4, 0.15), 2, at(0.7, -0.3, 0.2), smooth=True),
+        part(box((0.3, 1.4, 0.3)), 3, at(0.1, 0.2, -0.9)),
+        materials=[
+            material(base_color=vector(0.6, 0.55, 0.5, 1), roughness=0.4),
+            material(base_color=vector(0.9, 0.7, 0.4, 1), metallic=1.0, roughness=0.25),
+            colored(0.2, 0.3, 0.8),
+            colored(0.7, 0.3, 0.2),
+        ],
+        lights=[sun(vector(0.5, -1.0, -0.4), 3.0)],
+    )
+    made.environment = Environment(None, vector(0.5, 0.7, 1.0), 0.4)
+    return made
+
+
+def spotlit_corner() -> Scene:
+    """One spot light in a dark corner; all else is bounced light."""
+    direction = vector(-0.6, -1.0, -0.6)
+    lamp = Light(
+        "spot",
+        "spot",
+        vector(1, 1, 1),
+        intensity=30.0,
+        position=vector(0.9, 1.2, 0.9),
+        direction=direction / np.linalg.norm(direction),
+        inner_angle=0.25,
+        outer_angle=0.45,
+    )
+    return scene(
+        part(box((3, 0.2, 3)), 0, at(0, -1, 0)),
+        part(box((3, 3, 0.2)), 1, at(0, 0.4, -1.4)),
+        part(box((0.2, 3, 3)), 2, at(-1.4, 0.4, 0)),
+        materials=[colored(0.8, 0.8, 0.8), colored(0.8, 0.3, 0.1), colored(0.1, 0.4, 0.8)],
+        lights=[lamp],
+    )
+
+
+SCENES: dict[str, tuple[Callable[[], Scene], dict[str, Any]]] = {
+    "colored_room": (colored_room, {"exposure": 0.0}),
+    "colored_room_direct": (colored_room, {"gi.enabled": False}),
+    "colored_room_bounces": (colored_room, {"gi.bounces": 3}),
+    "sunlit_plaza": (sunlit_plaza, {}),
+    "spotlit_corner": (spotlit_corner, {"exposure": 1.0}),
+}
+
+
+def camera() -> Camera:
+    """In front of the scenes, a little above."""
+    view_from_world = transforms.look_at((0.3, 0.5, 3.4), (0.0, -0.1, 0.0))
+    return Camera("golden", transforms.inverse(view_from_world), fov_y=0.8, near=0.05)
+
+
+def draw(device: Device, name: str) -> npt.NDArray[np.uint8]:
+    """The finished picture (H, W, 3) of one of SCENES."""
+    make, settings = SCENES[name]
+    renderer = Renderer(device, make(), Settings({**SETTINGS, **settings}), SIZE)
+    try:
+        picture = renderer.read(renderer.render(camera(), 0.0, 0))
+        device.finish()
+        return np.ascontiguousarray(picture[..., :3], np.uint8)
+    finally:
+        renderer.release()
