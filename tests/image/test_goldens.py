@@ -1,4 +1,4 @@
-"""Golden pictures of the whole frame on the software driver; `tools/update_goldens.py` makes them."""
+"""Golden pictures of the whole frame on the software driver, made by `tools/update_goldens.py`."""
 
 # GI-07, GI-12, SH-01, SH-09, AP-02: the frame as a whole
 
