@@ -167,7 +167,8 @@ class Renderer:
 
     def _prepare_voxels(self, view: str) -> VoxelLighting | None:
         """The octree, counted and allocated when it is first needed."""
-        if not self.settings["gi.enabled"] and view not in OCTREE_VIEWS:
+        gathers = self.settings["gi.enabled"] and self.settings["gi.bounces"] > 0
+        if not gathers and view not in OCTREE_VIEWS:
             return None
         if self._voxels is None:
             s = self.settings
