@@ -29,17 +29,28 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         options = parse(words, commands)
         options.command(options)
-        sys.stdout.flush()
+        if sys.stdout is not None:
+            sys.stdout.flush()
     except InputError as error:
         first, *more = error.lines
         return _refuse("; ".join([first, *(line.removeprefix(f"{error.file}: ") for line in more)]))
     except MemoryError as error:
         return _refuse(f"out of memory: {error}" if str(error) else "out of memory")
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _drop_output()
+    except OSError as error:
+        if error.filename is not None:
+            raise  # not a stream
+        _drop_output()
+        return _refuse(f"can't be written: {error.strerror}")
     except KeyboardInterrupt:
         return 130
     return 0
+
+
+def _drop_output() -> None:
+    """Let what stdout still holds go nowhere, else Python complains of it at its end."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _refuse(message: str) -> int:
@@ -79,5 +90,10 @@ def _list(options: argparse.Namespace) -> None:
         raise InputError("list cameras", "SCENE", "name a scene")
     if options.what != "cameras" and options.scene is not None:
         raise InputError(f"list {options.what}", options.scene, "takes no scene")
-    for line in lines(options.what, options.scene):
+    if sys.stdout is None:
+        raise InputError(f"list {options.what}", "", "the standard output is closed")
+    found = lines(options.what, options.scene)
+    for line in found:
         print(line)
+    if not found:
+        print(f"elemental: note: no {options.what}", file=sys.stderr)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from elemental.core.errors import InputError
 from elemental.core.layout import Block
 from elemental.gpu.device import Device
 from elemental.gpu.graph import Graph
@@ -16,7 +18,7 @@ from elemental.gpu.refs import TextureHandle
 from elemental.gpu.resources import Texture
 from elemental.passes.camera_view import pack_view
 from elemental.passes.cone_trace.diffuse import CONES, combine_diffuse, trace_diffuse
-from elemental.passes.cone_trace.specular import trace_specular
+from elemental.passes.cone_trace.specular import LIST_HEADER_BYTES, trace_specular
 from elemental.passes.forward import draw_translucent
 from elemental.passes.gbuffer import GBuffer, draw_gbuffer
 from elemental.passes.post.fxaa import fxaa
@@ -67,11 +69,17 @@ class Frame:
 
 
 class Renderer:
-    """A scene on the device, and how a frame of it is made. ``size``: (width, height), px."""
+    """A scene on the device, and how a frame of it is made. ``size``: (width, height), px.
+
+    Raises InputError for a size that the driver can't draw.
+    """
 
     def __init__(
         self, device: Device, scene: Scene, settings: Settings, size: tuple[int, int]
     ) -> None:
+        if size[0] * size[1] > max_pixels(device):
+            reason = f"this driver draws at most {max_pixels(device):,} pixels"
+            raise InputError("--size", f"{size[0]}x{size[1]}", reason)
         self.device = device
         self.scene = scene
         self.settings = settings
@@ -82,8 +90,10 @@ class Renderer:
         self._voxels: VoxelLighting | None = None
 
     def resize(self, size: tuple[int, int]) -> None:
-        """Draw the next frame at ``size``."""
-        self.size = (max(size[0], 1), max(size[1], 1))
+        """Draw the next frame at ``size``, or smaller where the driver can't."""
+        width, height = max(size[0], 1), max(size[1], 1)
+        scale = min(1.0, math.sqrt(max_pixels(self.device) / (width * height)))
+        self.size = (max(int(scale * width), 1), max(int(scale * height), 1))
 
     def invalidate(self, what: str) -> None:
         """Rebuild the voxels of the "geometry", or only their "light", with the next frame."""
@@ -194,6 +204,11 @@ class Renderer:
         self._sky.release()
         self._shadows.release()
         self._meshes.release()
+
+
+def max_pixels(device: Device) -> int:
+    """The largest picture: the list of glossy pixels, a word each, is one storage block."""
+    return (device.storage_limit - LIST_HEADER_BYTES) // 4
 
 
 def _shadow_settings(settings: Settings) -> ShadowSettings:

@@ -131,9 +131,10 @@ def settings_entry(settings: Settings) -> dict[str, Any]:
 
 
 def overflow_warnings(counters: Mapping[str, int]) -> list[str]:
-    """One line for each counter of dropped things that is not zero."""
+    """One line for each counter of dropped things that is not zero, with what helps."""
     dropped = {name: count for name, count in counters.items() if "dropped" in name and count}
-    return [f"{count:,} {name.replace('_', ' ')}" for name, count in dropped.items()]
+    remedies = {"octree_bricks_dropped": "; raise gi.memory_budget_mb or lower gi.resolution"}
+    return [f"{n:,} {name.replace('_', ' ')}{remedies.get(name, '')}" for name, n in dropped.items()]
 
 
 def write_json(path: Path, content: Mapping[str, Any]) -> None:

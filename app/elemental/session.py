@@ -20,12 +20,20 @@ from elemental.core.errors import InputError
 from elemental.core.images import read_environment
 from elemental.gpu.device import Device
 from elemental.scene.camera_path import camera_at
-from elemental.scene.defaults import add_default_lights, fixed_exposure_ev, is_unlit
+from elemental.scene.defaults import (
+    add_default_lights,
+    fixed_exposure_ev,
+    is_unlit,
+    note_emission_only,
+    note_exposure,
+)
 from elemental.scene.load import load_scene
 from elemental.scene.model import Camera, CameraPath, Environment, Scene, framing_camera
 from elemental.settings import Settings
 
 DEFAULT_SCENE = "atrium"
+NAMES_TOLD = 24
+"""How many names a refusal lists: every view, and the cameras of most scenes."""
 
 Point = tuple[float, float, float]
 
@@ -52,19 +60,18 @@ def open_scene(name: str | None, assignments: Iterable[str]) -> tuple[Scene, Set
     texts = tuple(assignments)
     Settings.parse(texts)  # refuse bad words before a large file is read
     scene = load_scene(DEFAULT_SCENE if name is None else name, default_lights=False)
-    settings = Settings.parse(texts, _own_settings(scene))
+    exposure = fixed_exposure_ev(scene) if scene.exposure_ev is None else scene.exposure_ev
+    own = Settings().replace({"exposure": exposure, **scene.settings}, str(scene.path))
+    settings = Settings.parse(texts, own)
+    if scene.exposure_ev is None and settings["exposure"] == exposure != 0.0:
+        note_exposure(scene, exposure)
     if settings["sky.image"]:
         radiance = read_environment(Path(settings["sky.image"]))
         scene.environment = Environment(radiance, np.ones(3, np.float32), 1.0)
     if settings["scene.default_lights"] and is_unlit(scene):
         add_default_lights(scene)
+    note_emission_only(scene)
     return scene, settings
-
-
-def _own_settings(scene: Scene) -> Settings:
-    stated = scene.exposure_ev
-    exposure = fixed_exposure_ev(scene) if stated is None else stated
-    return Settings().replace({"exposure": exposure, **scene.settings}, str(scene.path))
 
 
 @dataclass(frozen=True)
@@ -127,8 +134,8 @@ def known_name(flag: str, name: str, names: Sequence[str], file: str = "") -> st
     """``name`` if it is among ``names``; else InputError with the nearest one."""
     if name in names:
         return name
-    nearest = difflib.get_close_matches(name, names, n=1, cutoff=0.4)
-    known = ", ".join(names[:8]) + (", …" if len(names) > 8 else "")
+    nearest = difflib.get_close_matches(name, names, n=1, cutoff=0.6)
+    known = ", ".join(names[:NAMES_TOLD]) + (", …" if len(names) > NAMES_TOLD else "")
     reason = f"no such name as {name!r}; "
     reason += f"did you mean {nearest[0]!r}?" if nearest else f"known: {known or 'none'}"
     raise InputError(file, flag, reason) if file else InputError(flag, "", reason)
@@ -138,17 +145,27 @@ def check_output(flag: str, path: Path, suffixes: tuple[str, ...]) -> None:
     """Refuse a file that can't be written or has another suffix, before work is spent on it."""
     if path.suffix.lower() not in suffixes:
         raise InputError(flag, str(path), f"the name must end in {' or '.join(suffixes)}")
-    if path.is_dir():
-        raise InputError(flag, str(path), "is a folder")
-    if not path.parent.is_dir():
-        raise InputError(flag, str(path), f"the folder {path.parent} does not exist")
+    try:
+        if path.is_dir():
+            raise InputError(flag, str(path), "is a folder")
+        if not path.parent.is_dir():
+            raise InputError(flag, str(path), f"the folder {path.parent} does not exist")
+    except OSError as error:
+        raise InputError(flag, str(path), f"can't be written ({error.strerror})") from error
     if not os.access(path.parent, os.W_OK | os.X_OK):
         raise InputError(flag, str(path), f"the folder {path.parent} can't be written")
 
 
-FRAME_NUMBER = re.compile(r"%0?(\d*)d")
+FRAME_NUMBER = re.compile(r"%0?([0-9]{0,2})d")
+WIDER_NUMBER = re.compile(r"%[0-9]{3,}d")
 
 
 def frame_file(pattern: Path, frame: int) -> Path:
-    """``out.%04d.png`` for frame 7 is ``out.0007.png``; a name without a pattern is itself."""
+    """``out.%04d.png`` for frame 7 is ``out.0007.png``; a name without a pattern is itself.
+
+    Raises InputError for a number wider than two digits can say.
+    """
+    wider = WIDER_NUMBER.search(FRAME_NUMBER.sub("_", pattern.name))
+    if wider is not None:
+        raise InputError("-o", str(pattern), f"{wider[0]!r} is wider than 99 digits")
     return pattern.with_name(FRAME_NUMBER.sub(lambda m: f"{frame:0{m[1] or 1}d}", pattern.name))

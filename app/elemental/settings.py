@@ -113,7 +113,7 @@ class Setting:
 _TABLE = (
     Setting(
         "gi.enabled", "bool", True,
-        "indirect light by voxel cone tracing; off leaves direct light and emission",
+        "indirect light by voxel cone tracing, the sky's too; off leaves direct light and emission",
         source="[Mittring12] [Crassin11]",
     ),
     Setting(
@@ -132,7 +132,7 @@ _TABLE = (
         # 36: nine wide cones lose a third of a small lamp's light to the walls that they touch;
         # 63 cost 1.7 times as much (docs/gi.md).
         "gi.diffuse_cones", "choice", 36,
-        "cones over the sphere that gather diffuse light: the talk's nine, whole or divided",
+        "cones over the sphere that gather diffuse light; the talk's 9 lose the light of small lamps",
         unit="cones", choices=(9, 36, 63), source="[Mittring12] [Segovia06]",
     ),
     Setting(
@@ -254,7 +254,7 @@ def _flatten(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str,
 def _find(file: str, key: str) -> Setting:
     if key in SETTINGS:
         return SETTINGS[key]
-    nearest = difflib.get_close_matches(key, SETTINGS, n=1, cutoff=0.5)
+    nearest = difflib.get_close_matches(key, SETTINGS, n=1, cutoff=0.6)
     hint = f"did you mean {nearest[0]}?" if nearest else "see `elemental list settings`"
     raise InputError(file, key, f"unknown setting; {hint}")
 

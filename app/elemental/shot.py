@@ -61,7 +61,7 @@ def shoot(shot: Shot) -> None:
     An output name with a frame number (``out.%04d.png``) gets each frame. Everything that can be
     refused is refused before the first frame. Raises InputError.
     """
-    check_output("-o", shot.output, SUFFIXES)
+    check_output("-o", frame_file(shot.output, shot.frames - 1), SUFFIXES)
     if shot.report is not None:
         check_output("--report", shot.report, (".json",))
     known_name("--view", shot.view, list(VIEWS))

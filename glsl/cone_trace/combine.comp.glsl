@@ -63,14 +63,17 @@ void main() {
                 float similarity = surface_similarity(at, p_ws, normal, inverse_tolerance);
                 float tent = float((3 - abs(x)) * (3 - abs(y)));
                 float weight = tent * max(similarity, LEAST_SIMILARITY);
-                cone_sum += texelFetch(u_radiance, sub_image_texel(at, size), 0) * weight;
+                vec4 traced = texelFetch(u_radiance, sub_image_texel(at, size), 0);
+                if (traced.a < 0.0) continue;  // rejected
+                cone_sum += traced * weight;
                 cone_samples += weight;
             }
         }
         // Each cone's mean first, so that a cone with fewer similar neighbours keeps its weight.
         if (cone_samples <= 0.0) continue;
-        sum += cone_sum / cone_samples;
-        weights += cone_group_weight(normal, cone_of_pixel(pixel + first + 3));
+        float weight = cone_group_weight(normal, cone_of_pixel(pixel + first + 3));
+        sum += cone_sum * (weight / cone_samples);
+        weights += weight;
     }
     imageStore(o_diffuse_gi, pixel, sum / max(weights, 1e-6));
 }

@@ -22,7 +22,7 @@ void main() {
     ivec2 pixel = at * 3 + cone_offset(cone);
     if (any(greaterThanEqual(pixel, size))) return;
 
-    vec4 result = vec4(0.0);
+    vec4 result = vec4(0.0, 0.0, 0.0, REJECTED);
     float depth = texelFetch(u_depth, pixel, 0).r;
     if (depth < 1.0) {
         vec3 normal = normal10_decode(texelFetch(u_gbuffer_a, pixel, 0).xyz);

@@ -1,5 +1,6 @@
 // One cone a listed pixel along the mirrored eye vector. [Mittring12 "Specular Sampling 1/2"]
 
+#include "lib/dispatch.glsl"
 #include "lib/specular_cone.glsl"
 #include "shared/specular_list.glsl"
 
@@ -11,7 +12,7 @@ uniform sampler2D u_gbuffer_d;
 layout(rgba16f) writeonly uniform image2D o_specular_gi;
 
 void main() {
-    uint item = gl_GlobalInvocationID.x;
+    uint item = linear_thread_id();
     if (item >= specular_list.count) return;
     uint code = specular_list.pixels[item];
     ivec2 pixel = ivec2(code & 0xffffu, code >> 16);

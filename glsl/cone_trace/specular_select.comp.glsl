@@ -2,6 +2,7 @@
 // [Mittring12 "Specular Sampling": adaptive by specular brightness; an append that also maintains the
 // group count saves one pass]
 
+#include "lib/dispatch.glsl"
 #include "lib/brdf.glsl"
 #include "shared/gbuffer.glsl"
 #include "shared/specular_list.glsl"
@@ -36,6 +37,6 @@ void main() {
         return;
     }
     uint at = atomicAdd(specular_list.count, 1u);
-    atomicMax(specular_list.groups_x, at / SPECULAR_GROUP + 1u);  // the slide's (at + 63) / 64 misses item 0
+    reach_item(specular_list.groups_x, specular_list.groups_y, at, SPECULAR_GROUP);
     specular_list.pixels[at] = (uint(pixel.y) << 16) | uint(pixel.x);
 }

@@ -26,12 +26,13 @@ float normal_certainty(float squared_length) { return min(squared_length * 4.0, 
 
 // Share of a leaf's radiance that a side shows, from the squared length of its mean normal and the
 // cosine between that and the side. A surface shows its radiance to all of the half space before it.
-// A side seen edge-on (cosine 0) serves that half space and the one behind; it gets everything,
-// which is right for the front [inferred: with half of it, light between walls that meet at a right
-// angle fell short of a path tracer's by a quarter]. sqrt(3) makes the three front sides of a
-// diagonal normal show it whole, and its three back sides nothing.
+// A side seen edge-on (cosine 0) serves that half space and the one behind, and gets half of it: all
+// of it is closer to a path tracer between walls that meet at right angles, but doubles what leaks
+// from the lit outside of a wall into a closed room; nothing loses a third of the light (docs/gi.md).
+// sqrt(3) makes the three front sides of a diagonal normal show it whole, its back sides nothing.
 float side_visibility(float squared_length, float cosine) {
-    return mix(1.0, clamp(1.0 + sqrt(3.0) * cosine, 0.0, 1.0), normal_certainty(squared_length));
+    float facing = clamp(0.5 + 0.5 * sqrt(3.0) * cosine, 0.0, 1.0);
+    return mix(1.0, facing, normal_certainty(squared_length));
 }
 
 // Share of its radiance that a voxel with this mean normal shows to a ray along `direction`.

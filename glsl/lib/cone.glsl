@@ -74,9 +74,20 @@ ConeSample cone_sample(vec3 p, float lod, vec3 direction, vec3 inverse_direction
     return ConeSample(value, 0.0);
 }
 
+// Height over the plane of the surface that a cone leaves: finest voxels at the start, and a voxel of
+// the way. Samples stay CLEARANCE_VOXELS of their own widths above it; a cone near the plane takes
+// narrower ones, or it would find the surface that it comes from and darken it. [inferred]
+struct Clearance {
+    float start;
+    float slope;
+};
+const float CLEARANCE_VOXELS = 2.5;
+const Clearance NO_SURFACE = Clearance(1e9, 0.0);
+
 // Pos: world space. ConeAngle: half the aperture in radians. Radiance, and how much is hidden.
 // start_m: distance along the cone at which the march begins, the start bias.
-vec4 cone_trace_from(vec3 Pos, vec3 Direction, float ConeAngle, float start_m) {
+// `clearance` keeps the cone's samples off the surface that it leaves.
+vec4 cone_trace_above(vec3 Pos, vec3 Direction, float ConeAngle, float start_m, Clearance clearance) {
     float side = 2.0 * float(u_octree.resolution);
     vec3 origin = octree_from_world(Pos) * side;
     vec3 guarded = mix(Direction, vec3(1e-6), lessThan(abs(Direction), vec3(1e-6)));
@@ -87,7 +98,8 @@ vec4 cone_trace_from(vec3 Pos, vec3 Direction, float ConeAngle, float start_m) {
     float t = start_m / u_octree.voxel_m;
     vec4 gathered = vec4(0.0);
     for (int i = 0; i < CONE_STEPS_MAX; ++i) {
-        float width = max(widening * t / CONE_FOOTPRINT, 1.0);
+        float height = clearance.start + clearance.slope * t;
+        float width = max(min(widening * t / CONE_FOOTPRINT, height / CLEARANCE_VOXELS), 1.0);
         vec3 p = origin + Direction * t;
         if (any(lessThan(p, vec3(0.0))) || any(greaterThanEqual(p, vec3(side)))) break;
         float lod = min(log2(width), lod_last);
@@ -107,6 +119,10 @@ vec4 cone_trace_from(vec3 Pos, vec3 Direction, float ConeAngle, float start_m) {
         }
     }
     return gathered;
+}
+
+vec4 cone_trace_from(vec3 Pos, vec3 Direction, float ConeAngle, float start_m) {
+    return cone_trace_above(Pos, Direction, ConeAngle, start_m, NO_SURFACE);
 }
 
 vec4 SVOConeTrace(vec3 Pos, vec3 Direction, float ConeAngle) {

@@ -7,19 +7,29 @@
 // The march starts off the surface, whose own voxels reach this many finest voxels above it.
 const float DIFFUSE_NORMAL_BIAS = 1.0;
 const float DIFFUSE_START = 1.0;
+// A cone that points closer to the surface is lifted to this sine: half of it is below anyway.
+const float LEAST_ELEVATION = 0.25;
 
-// Sum over a group's cones of weight times (radiance, visibility of the sky); those behind the
+const float REJECTED = -1.0;  // alpha of a group that lies behind the surface whole
+
+// Mean over a group's cones, by weight, of (radiance, visibility of the sky); those behind the
 // surface are rejected.
 vec4 diffuse_cone(vec3 p_ws, vec3 normal, int cone) {
-    vec3 origin = p_ws + normal * (DIFFUSE_NORMAL_BIAS * u_octree.voxel_m);
+    float voxel = u_octree.voxel_m;
+    vec3 origin = p_ws + normal * (DIFFUSE_NORMAL_BIAS * voxel);
     vec4 sum = vec4(0.0);
+    float weights = 0.0;
     for (int i = 0; i < CONE_SPLIT; ++i) {
         vec3 direction = CONE_DIRECTIONS[cone * CONE_SPLIT + i];
         float weight = cone_weight(normal, direction);
         if (weight <= 0.0) continue;
-        vec4 traced = cone_trace_from(origin, direction, CONE_HALF_ANGLE, DIFFUSE_START * u_octree.voxel_m);
+        float elevation = max(dot(normal, direction), LEAST_ELEVATION);
+        vec3 lifted = normalize(direction + normal * (elevation - dot(normal, direction)));
+        Clearance clearance = Clearance(DIFFUSE_NORMAL_BIAS, dot(normal, lifted));
+        vec4 traced = cone_trace_above(origin, lifted, CONE_HALF_ANGLE, DIFFUSE_START * voxel, clearance);
         float visible = 1.0 - traced.a;
         sum += weight * vec4(traced.rgb + visible * sky_radiance(direction, CONE_HALF_ANGLE), visible);
+        weights += weight;
     }
-    return sum;
+    return weights > 0.0 ? sum / weights : vec4(0.0, 0.0, 0.0, REJECTED);
 }

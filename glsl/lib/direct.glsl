@@ -22,6 +22,7 @@ struct DirectLight {
 DirectLight reflect_light(ShadingPoint p, Light light) {
     LightSample s = sample_light(light, p.p_ws);
     float n_o_l = clamp(dot(p.n_ws, s.to_light), 0.0, 1.0);
+    if (n_o_l <= 0.0) return DirectLight(vec3(0.0), vec3(0.0));  // the half vector may be none
     vec3 h = normalize(s.to_light + p.to_eye);
     float area_angle = light_area_angle(light.source_radius, s.distance_m);
     vec3 fresnel = fresnel_schlick(p.specular_color, dot(p.to_eye, h));

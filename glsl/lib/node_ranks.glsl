@@ -3,7 +3,6 @@
 #include "lib/node_counts.glsl"
 
 layout(std430) readonly buffer Ranks { uvec2 ranks[]; };
-layout(std430) readonly buffer GroupSums { uvec2 group_sums[]; };
 
 // Bricks and tiles before the block.
-uvec2 block_rank(uint block) { return ranks[block] + group_sums[block / SCAN_BLOCKS]; }
+uvec2 block_rank(uint block) { return ranks[block] + ranks[u_octree.block_count + block / SCAN_BLOCKS]; }

@@ -1,5 +1,7 @@
 // Small encodings. Each has its inverse; none binds anything.
 
+const float HALF_MAX = 65504.0;  // the largest finite half float
+
 // Shared-exponent colour: 9 bits a channel, 5 bits of exponent, as OpenGL's RGB9_E5
 // (OpenGL 4.3 core, section 8.5.2 "Encoding of Special Internal Formats").
 const float RGB9E5_MAX = 65408.0;  // (2^9 - 1) / 2^9 * 2^(31 - 15)

@@ -17,7 +17,8 @@ vec4 specular_cone(vec3 p_ws, vec3 normal, float half_angle) {
     // A mirrored ray of a shading normal may point into the surface.
     direction = normalize(direction + normal * max(0.0, 0.02 - dot(direction, normal)));
     vec3 origin = p_ws + normal * (SPECULAR_NORMAL_BIAS * u_octree.voxel_m);
-    vec4 cone = cone_trace_from(origin, direction, half_angle, SPECULAR_START * u_octree.voxel_m);
+    Clearance clearance = Clearance(SPECULAR_NORMAL_BIAS, dot(direction, normal));
+    vec4 cone = cone_trace_above(origin, direction, half_angle, SPECULAR_START * u_octree.voxel_m, clearance);
     float visible = 1.0 - cone.a;
     return vec4(cone.rgb + visible * sky_radiance(direction, half_angle), visible);
 }

@@ -16,8 +16,10 @@ vec3 gathered_radiance(vec3 p_ws, vec3 normal, float spacing) {
     vec3 sum = vec3(0.0);
     float weights = 0.0;
     for (int i = 0; i < CONE_COUNT; ++i) {
-        sum += diffuse_cone(p_ws + normal * (0.5 * spacing), normal, i).rgb;
-        weights += cone_group_weight(normal, i);
+        float weight = cone_group_weight(normal, i);
+        if (weight <= 0.0) continue;
+        sum += weight * diffuse_cone(p_ws + normal * (0.5 * spacing), normal, i).rgb;
+        weights += weight;
     }
     return sum / max(weights, 1e-6);
 }

@@ -57,7 +57,7 @@ void main() {
     float depth = texelFetch(u_depth, pixel, 0).r;
     if (depth == DEPTH_CLEAR) {
 #if SKY
-        imageStore(u_scene_color, pixel, vec4(sky_radiance(eye_ray_ws(uv), 0.0), 0.0));
+        imageStore(u_scene_color, pixel, vec4(min(sky_radiance(eye_ray_ws(uv), 0.0), HALF_MAX), 0.0));
 #endif
         return;
     }
@@ -67,5 +67,5 @@ void main() {
     if (s.lighting_model == LIGHTING_UNLIT) return;
     vec4 emission = imageLoad(u_scene_color, pixel);
     vec3 radiance = emission.rgb + shade_surface(s, position_ws_at(uv, depth), pixel);
-    imageStore(u_scene_color, pixel, vec4(min(radiance, vec3(65504.0)), 1.0));
+    imageStore(u_scene_color, pixel, vec4(min(radiance, HALF_MAX), 1.0));
 }

@@ -1,5 +1,6 @@
 // Adds every fragment to its voxel in integers, so the sums do not depend on the order.
 
+#include "lib/dispatch.glsl"
 #include "lib/regions.glsl"
 #include "lib/octree.glsl"
 #include "lib/packing.glsl"
@@ -14,7 +15,7 @@ layout(std430) buffer NormalSums { int normal_sums[]; };
 layout(std430) buffer EmissiveSums { uint emissive_sums[]; };
 
 void main() {
-    uint index = gl_GlobalInvocationID.x;
+    uint index = linear_thread_id();
     if (index >= min(octree_state.fragment_count, u_octree.fragment_capacity)) return;
     VoxelFragment fragment = fragments[index];
     int level;

@@ -5,6 +5,7 @@
 // both bricks have the same multiplier, and rounding to nearest keeps the error of a voxel at or
 // below 1/255 of its brick's largest value: half a step of at most twice that value.
 
+#include "lib/dispatch.glsl"
 #include "lib/brick_points.glsl"
 #include "lib/brick_atlas.glsl"
 
@@ -26,7 +27,7 @@ float largest_side(uint brick, uint voxel) {
 }
 
 void main() {
-    uint brick = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * BRICK_GROUP;
+    uint brick = linear_thread_id();
     if (brick >= octree_state.interior_count) return;
     BrickPoints points = brick_points(brick);
     float maximum = 0.0;

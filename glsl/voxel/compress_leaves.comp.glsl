@@ -1,5 +1,6 @@
 // Writes the 3x3x3 colours and normals of each brick of the finest level. Encoding: compress.comp.
 
+#include "lib/dispatch.glsl"
 #include "lib/brick_points.glsl"
 #include "lib/brick_atlas.glsl"
 
@@ -10,7 +11,7 @@ layout(rgba8) writeonly uniform image3D u_colors;
 layout(rgba8_snorm) writeonly uniform image3D u_normals;
 
 void main() {
-    uint slot = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * BRICK_GROUP;
+    uint slot = linear_thread_id();
     uint brick = octree_state.interior_count + slot;
     if (brick >= octree_state.brick_count) return;
     BrickPoints points = brick_points(brick);

@@ -2,6 +2,7 @@
 // Across the axis a tent [1/4 1/2 1/4]^2, along it half, full, half, composited front to back; each
 // side from the same side only. [Mittring12], [Crassin11], [Gobbetti05]
 
+#include "lib/dispatch.glsl"
 #include "lib/sided_voxel.glsl"
 #include "shared/octree_level.glsl"
 
@@ -64,7 +65,7 @@ void filter_axis(uint voxel, uint axis, ivec3 centre, int finer, Cells cells) {
 }
 
 void main() {
-    uint item = gl_GlobalInvocationID.x;
+    uint item = linear_thread_id();
     int level = u_level.level;
     if (item >= octree_state.level_voxels[level].threads) return;
     uint voxel = filter_list[octree_state.level_first[level] * BRICK_VOXELS + item];

@@ -2,6 +2,7 @@
 // [Mittring12 "Voxel Lighting Pipeline": direct light with shadow maps, ambient colour, combine
 // with albedo, add emissive]
 
+#include "lib/dispatch.glsl"
 #include "lib/packing.glsl"
 #include "lib/lights.glsl"
 #include "lib/shadow.glsl"
@@ -20,19 +21,26 @@ const float SHADOW_OFFSET_VOXELS = 1.0;
 // Mean of the clamped cosine over all directions, for voxels without a normal of their own.
 const float MEAN_COSINE = 0.25;
 
-vec3 direct_irradiance(vec3 p_ws, vec3 normal, float certainty, float offset_m) {
+// A light nearer than this share of a voxel lights the voxel as if it were so far: what is wanted is
+// the mean over the voxel, not the value at its lattice point.
+const float NEAREST_LIGHT_VOXELS = 0.5;
+
+vec3 direct_irradiance(vec3 p_ws, vec3 normal, float certainty, float spacing) {
     vec3 sum = vec3(0.0);
     for (int i = 0; i < lights.length(); ++i) {
         LightSample light = sample_light(lights[i], p_ws);
         float cosine = mix(MEAN_COSINE, max(dot(normal, light.to_light), 0.0), certainty);
         if (cosine * max(light.irradiance.r, max(light.irradiance.g, light.irradiance.b)) <= 0.0) continue;
-        sum += light.irradiance * (cosine * light_visibility(uint(i), p_ws, normal, offset_m));
+        float visibility = light_visibility(uint(i), p_ws, normal, spacing * SHADOW_OFFSET_VOXELS);
+        float nearness = lights[i].kind == LIGHT_DIRECTIONAL
+                             ? 1.0 : min(light.distance_m / (NEAREST_LIGHT_VOXELS * spacing), 1.0);
+        sum += light.irradiance * (cosine * visibility * nearness * nearness);
     }
     return sum;
 }
 
 void main() {
-    uint index = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * BRICK_GROUP;
+    uint index = linear_thread_id();
     if (index >= octree_state.leaf_count * BRICK_VOXELS) return;
     VoxelAttributes voxel = attributes[index];
     if (voxel.fragments == 0u) {
@@ -52,8 +60,8 @@ void main() {
     vec3 normal = mean_normal * inversesqrt(max(squared, 1e-6));
     float certainty = min(squared * 4.0, 1.0);
     vec4 albedo = unpackUnorm4x8(voxel.albedo);
-    vec3 incident = direct_irradiance(p_ws, normal, certainty, spacing * SHADOW_OFFSET_VOXELS) * INVERSE_PI;
+    vec3 incident = direct_irradiance(p_ws, normal, certainty, spacing) * INVERSE_PI;
     incident += u_octree.ambient + gathered_radiance(p_ws, normal, spacing);
-    vec3 outgoing = albedo.rgb * incident + rgb9e5_unpack(voxel.emissive);
+    vec3 outgoing = min(albedo.rgb * incident + rgb9e5_unpack(voxel.emissive), HALF_MAX);
     radiance[index] = uvec2(packHalf2x16(outgoing.rg * albedo.a), packHalf2x16(vec2(outgoing.b, 1.0) * albedo.a));
 }

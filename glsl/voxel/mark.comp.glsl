@@ -1,5 +1,6 @@
 // Sets the bit of every lattice point that a fragment fell on.
 
+#include "lib/dispatch.glsl"
 #include "lib/node_bits.glsl"
 #include "lib/regions.glsl"
 
@@ -10,7 +11,7 @@ layout(std430) readonly buffer Fragments { VoxelFragment fragments[]; };
 layout(std430) buffer Points { uint point_words[]; };
 
 void main() {
-    uint index = gl_GlobalInvocationID.x;
+    uint index = linear_thread_id();
     if (index >= min(octree_state.fragment_count, u_octree.fragment_capacity)) return;
     int level;
     uvec3 point = leaf_point(unpack_position(fragments[index].position), level);

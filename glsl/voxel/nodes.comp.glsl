@@ -1,6 +1,7 @@
 // Writes the nodes and the bricks' places: every word by one thread, from ranks alone.
 // [Mittring12 "Sparse Voxel Octree": fully maintained on GPU]
 
+#include "lib/dispatch.glsl"
 #include "lib/regions.glsl"
 #include "lib/dense_nodes.glsl"
 #include "lib/node_ranks.glsl"
@@ -62,7 +63,7 @@ void list_voxels(uint brick, int level, uint points) {
     uint count = uint(bitCount(points));
     if (count == 0u) return;
     uint at = atomicAdd(octree_state.level_voxels[level].threads, count);
-    atomicMax(octree_state.level_voxels[level].x, (at + count - 1u) / BRICK_GROUP + 1u);
+    reach_item(octree_state.level_voxels[level].x, octree_state.level_voxels[level].y, at + count - 1u, BRICK_GROUP);
     uint first = octree_state.level_first[level] * BRICK_VOXELS;
     for (; points != 0u; points &= points - 1u) {
         filter_list[first + at] = brick * BRICK_VOXELS + uint(findLSB(points));
@@ -93,7 +94,7 @@ void write_node(uint index, int level, uvec3 cell, bool exists, uint brick) {
 }
 
 void main() {
-    uint block = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
+    uint block = linear_thread_id();
     if (block >= u_octree.block_count) return;
     int level = grid_of_block(block);
     uvec2 bits = uvec2(node_words[block * 2u], node_words[block * 2u + 1u]);

@@ -2,6 +2,7 @@
 // occupied points of the next coarser lattice. A node exists exactly where a lookup in it, border
 // included, can differ from empty, so empty nodes can be skipped without a jump.
 
+#include "lib/dispatch.glsl"
 #include "lib/node_bits.glsl"
 #include "lib/regions.glsl"
 #include "shared/octree_level.glsl"
@@ -48,7 +49,7 @@ void set_coarser_point(ivec3 point, int level) {
 
 void main() {
     int level = u_level.level;
-    uint block = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
+    uint block = linear_thread_id();
     if (block >= grid_block_count(level + 1)) return;
     uint first_word = (grid_first_block(level + 1) + block) * 2u;
     uvec2 bits = uvec2(point_words[first_word], point_words[first_word + 1u]);

@@ -1,5 +1,6 @@
 // Turns a voxel's sums into the averages that lighting reads.
 
+#include "lib/dispatch.glsl"
 #include "shared/octree.glsl"
 #include "lib/packing.glsl"
 
@@ -12,7 +13,7 @@ layout(std430) readonly buffer EmissiveSums { uvec4 emissive_sums[]; };
 layout(std430) writeonly buffer Attributes { VoxelAttributes attributes[]; };
 
 void main() {
-    uint voxel = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * BRICK_GROUP;
+    uint voxel = linear_thread_id();
     if (voxel >= octree_state.leaf_count * BRICK_VOXELS) return;
     VoxelAttributes result = VoxelAttributes(0u, 0u, 0u, 0u);
     uvec4 color = color_sums[voxel];

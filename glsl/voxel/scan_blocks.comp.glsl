@@ -6,8 +6,8 @@
 layout(local_size_x = 256) in;
 
 layout(std430) readonly buffer NodeBits { uint node_words[]; };
+// A rank a block, then a sum a group.
 layout(std430) writeonly buffer Ranks { uvec2 ranks[]; };
-layout(std430) writeonly buffer GroupSums { uvec2 group_sums[]; };
 
 shared uvec2 sums[SCAN_GROUP];
 
@@ -36,5 +36,5 @@ void main() {
     for (uint i = 0u; i < blocks_a_thread; ++i) {
         if (first + i < u_octree.block_count) ranks[first + i] = before + counts[i];
     }
-    if (thread == SCAN_GROUP - 1u) group_sums[gl_WorkGroupID.x] = sums[thread];
+    if (thread == SCAN_GROUP - 1u) ranks[u_octree.block_count + gl_WorkGroupID.x] = sums[thread];
 }

@@ -1,25 +1,24 @@
 // Prefix sum over 64-node blocks, second part: the groups' sums, the totals, and the arguments of
 // every later indirect dispatch. One work group.
 
+#include "lib/dispatch.glsl"
 #include "lib/node_counts.glsl"
 
 layout(local_size_x = 256) in;
 
 layout(std430) readonly buffer NodeBits { uint node_words[]; };
-layout(std430) readonly buffer Ranks { uvec2 ranks[]; };
-layout(std430) buffer GroupSums { uvec2 group_sums[]; };
+// A rank a block, then a sum a group: see scan_blocks. Coherent: one thread reads what others wrote.
+layout(std430) coherent buffer Ranks { uvec2 ranks[]; };
 layout(std430) buffer State { OctreeState octree_state; };
 
 shared uvec2 sums[SCAN_GROUP];
 
 DispatchArgs dispatch_args(uint threads, uint group) {
-    // Two dimensions, since one holds 65,535 groups at most.
-    const uint row = 32768u;
-    uint groups = (threads + group - 1u) / group;
-    return DispatchArgs(min(groups, row), max((groups + row - 1u) / row, 1u), 1u, threads);
+    uvec3 groups = linear_dispatch_args(threads, group);
+    return DispatchArgs(groups.x, groups.y, groups.z, threads);
 }
 
-uvec2 rank_of_block(uint block) { return ranks[block] + group_sums[block / SCAN_BLOCKS]; }
+uvec2 rank_of_block(uint block) { return ranks[block] + ranks[u_octree.block_count + block / SCAN_BLOCKS]; }
 
 // Bricks before the first block of a level's grid.
 uint bricks_before_level(int level, uint total) {
@@ -53,7 +52,7 @@ void main() {
     uint a_thread = (group_count + SCAN_GROUP - 1u) / SCAN_GROUP;
     uint first = thread * a_thread;
     uvec2 total = uvec2(0u);
-    for (uint i = first; i < min(first + a_thread, group_count); ++i) total += group_sums[i];
+    for (uint i = first; i < min(first + a_thread, group_count); ++i) total += ranks[u_octree.block_count + i];
     sums[thread] = total;
     barrier();
     for (uint stride = 1u; stride < SCAN_GROUP; stride <<= 1) {
@@ -64,8 +63,8 @@ void main() {
     }
     uvec2 before = sums[thread] - total;
     for (uint i = first; i < min(first + a_thread, group_count); ++i) {
-        uvec2 sum = group_sums[i];
-        group_sums[i] = before;
+        uvec2 sum = ranks[u_octree.block_count + i];
+        ranks[u_octree.block_count + i] = before;
         before += sum;
     }
     memoryBarrierBuffer();

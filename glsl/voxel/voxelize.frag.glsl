@@ -3,6 +3,7 @@
 
 #include "shared/octree.glsl"
 #include "shared/voxelize.glsl"
+#include "lib/dispatch.glsl"
 #include "lib/lattice.glsl"
 #include "lib/material.glsl"
 #include "lib/packing.glsl"
@@ -37,8 +38,7 @@ void main() {
         atomicAdd(octree_state.fragment_dropped, 1u);
         return;
     }
-    // The slide's (index + 63) / 64 misses the first item of each group; this does not.
-    atomicMax(octree_state.fragments.x, index / FRAGMENT_GROUP + 1u);
+    reach_item(octree_state.fragments.x, octree_state.fragments.y, index, FRAGMENT_GROUP);
     VoxelFragment fragment;
     fragment.position = pack_position(point);
     fragment.albedo = packUnorm4x8(vec4(surface.albedo, opacity));

@@ -19,15 +19,12 @@ out vec2 v_uv1;
 out vec4 v_color;
 flat out uint v_material;
 
-// Transforms normals as the matrix transforms points, but for their length.
-mat3 cofactor(mat3 m) { return mat3(cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])); }
-
 void main() {
     mat4 world_from_local = instances[a_instance].world_from_local;
     vec3 p_ws = (world_from_local * vec4(a_position, 1.0)).xyz;
     vec3 in_cube = (p_ws - u_octree.origin_size.xyz) / u_octree.voxel_m;
     v_point = in_cube - 0.5 * float(u_octree.resolution);
-    v_normal_ws = cofactor(mat3(world_from_local)) * a_normal;
+    v_normal_ws = mat3(instances[a_instance].normal_from_local) * a_normal;
     v_uv0 = a_uv0;
     v_uv1 = a_uv1;
     v_color = a_color;

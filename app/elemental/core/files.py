@@ -34,7 +34,7 @@ def atomic_file(path: Path) -> Iterator[Path]:
     Raises InputError where the folder is missing or can't be written.
     """
     try:
-        handle, name = tempfile.mkstemp(path.suffix, f".{path.stem}-", path.parent)
+        handle, name = tempfile.mkstemp(path.suffix, ".elemental-", path.parent)
     except OSError as error:
         raise InputError(path, "", f"can't be written ({error.strerror})") from error
     os.close(handle)

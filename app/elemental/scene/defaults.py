@@ -21,10 +21,24 @@ SKY_RADIANCE = 0.4
 
 def is_unlit(scene: Scene) -> bool:
     """Whether a scene has no light, no emission and no environment."""
-    if scene.environment is not None or any(light.intensity > 0.0 for light in scene.lights):
-        return False
+    return not _is_lit_from_outside(scene) and not _emits(scene)
+
+
+def note_emission_only(scene: Scene) -> None:
+    """Say in the notes of a scene that only its own emission lights it."""
+    if _emits(scene) and not _is_lit_from_outside(scene):
+        reason = "lit by its own emission only; --set sky.image=FILE adds a sky"
+        scene.notes.append(f"{scene.path}: {reason}")
+
+
+def _is_lit_from_outside(scene: Scene) -> bool:
+    """Whether a scene has an environment or a light."""
+    return scene.environment is not None or any(light.intensity > 0.0 for light in scene.lights)
+
+
+def _emits(scene: Scene) -> bool:
     used = {scene.meshes[instance.mesh].material for instance in scene.instances}
-    return not any(scene.materials[m].emits for m in used)
+    return any(scene.materials[m].emits for m in used)
 
 
 def add_default_lights(scene: Scene) -> None:
@@ -56,15 +70,21 @@ BRIGHT_SUN = 32.0
 
 
 def fixed_exposure_ev(scene: Scene) -> float:
-    """The exposure for a scene that states none, in EV; said in its notes where it is not 0.
+    """The exposure for a scene that states none, in EV.
 
     A white surface facing the brightest sun gets a radiance of 1. Suns up to `BRIGHT_SUN` and
     scenes without one stay at 0.
     """
-    suns = [s for s in scene.lights if s.kind == "directional"]
-    brightest = max((float(s.intensity * s.color.max()) for s in suns), default=0.0)
-    if brightest <= BRIGHT_SUN:
-        return 0.0
-    exposure = round(-math.log2(brightest / math.pi), 1)
-    scene.notes.append(f"{scene.path}: a sun of {brightest:.0f} lux: exposure {exposure:g} EV")
-    return exposure
+    brightest = _brightest_sun(scene)
+    return 0.0 if brightest <= BRIGHT_SUN else round(-math.log2(brightest / math.pi), 1)
+
+
+def note_exposure(scene: Scene, exposure: float) -> None:
+    """Say in the notes that `fixed_exposure_ev` chose the exposure, and how to choose another."""
+    chosen = f"a sun of {_brightest_sun(scene):.0f} lux: exposure {exposure:g} EV"
+    scene.notes.append(f"{scene.path}: {chosen}; --set exposure=EV changes it")
+
+
+def _brightest_sun(scene: Scene) -> float:
+    suns = [light for light in scene.lights if light.kind == "directional"]
+    return max((float(sun.intensity * sun.color.max()) for sun in suns), default=0.0)

@@ -103,7 +103,7 @@ class App:
         timings = [(timing.name, timing.gpu_ms) for timing in self.device.timings]
         self.averages.update([("frame", 1e3 * self._wall_s), *timings], self._wall_s)
         with self.gui.frame():
-            self._panels(size)
+            self._panels()
         self.window.swap()
         self.drawn += 1
 
@@ -142,6 +142,7 @@ class App:
                 self.say(f"{self.view}: {VIEWS[self.view]}")
             case "pause":
                 self.clock.toggle()
+                self.say("paused" if self.clock.paused else "playing")
             case "step":
                 self.clock.step()
             case "quit" if self.shows_help:
@@ -210,25 +211,25 @@ class App:
         self.frame = None
         self.renderer.release()
         self.stage = stage
-        self.renderer = Renderer(self.device, stage.scene, stage.settings, size)
+        self.renderer = Renderer(self.device, stage.scene, stage.settings, self.renderer.size)
         self.fly = replace(self.fly, diagonal=_diagonal(stage))
         self.say(f"reloaded {stage.scene.name}")
 
-    def _panels(self, size: tuple[int, int]) -> None:
-        if self.shows_hud and self.frame is not None:
-            draw_hud(self._figures(size, self.frame))
+    def _panels(self) -> None:
+        if self.shows_hud and not self.shows_help and self.frame is not None:
+            draw_hud(self._figures(self.frame))
         if self.shows_help:
             draw_help()
         if time.perf_counter() < self._message_until:
             draw_message(self._message)
 
-    def _figures(self, size: tuple[int, int], frame: Frame) -> Figures:
+    def _figures(self, frame: Frame) -> Figures:
         passes, settings = dict(self.averages.values), self.stage.settings
         return Figures(
             scene=self.stage.scene.name,
             driver=self.device.info.renderer,
             view=self.view,
-            size=size,
+            size=self.renderer.size,
             voxels=settings["gi.resolution"] if settings["gi.enabled"] else 0,
             frame_ms=passes.pop("frame", 0.0),
             cpu_ms=self._cpu_ms,

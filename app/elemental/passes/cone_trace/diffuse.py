@@ -26,7 +26,7 @@ def trace_diffuse(
 ) -> TextureHandle:
     """Nine sub-images of incoming radiance, one cone each: (3 ceil(H/3), 3 ceil(W/3)) RGBA16F.
 
-    Each is a sum over the cone of weight times radiance, W/(m^2 sr); a: of weight times visibility.
+    rgb: W/(m^2 sr); a: visibility of the sky, -1 where the cone is behind the surface.
     ``split``: of SPLITS.
     """
     width, height = (-(-side // 3) for side in gb.depth.size[:2])

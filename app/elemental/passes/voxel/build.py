@@ -73,23 +73,22 @@ def find_nodes(g: Graph, octree: Survey, fragments: AnyBuffer) -> dict[str, Ref]
         )
     group_blocks = int(layouts().constant("SCAN_BLOCKS"))
     groups = -(-grid.block_count // group_blocks)
-    ranks = g.buffer("voxel.ranks", grid.block_count * BLOCK_BYTES)
-    sums = g.buffer("voxel.group_sums", groups * BLOCK_BYTES)
+    ranks = g.buffer("voxel.ranks", (grid.block_count + groups) * BLOCK_BYTES)
     g.compute(
         SCAN_BLOCKS,
         reads={"NodeBits": node_bits},
-        writes={"Ranks": ranks, "GroupSums": sums},
+        writes={"Ranks": ranks},
         params=octree.params,
         groups=groups,
     )
     g.compute(
         SCAN_GROUPS,
-        reads={"NodeBits": node_bits, "Ranks": ranks},
-        writes={"GroupSums": sums, "State": octree.state},
+        reads={"NodeBits": node_bits},
+        writes={"Ranks": ranks, "State": octree.state},
         params=octree.params,
         groups=1,
     )
-    return {"Points": points, "NodeBits": node_bits, "Ranks": ranks, "GroupSums": sums}
+    return {"Points": points, "NodeBits": node_bits, "Ranks": ranks}
 
 
 def build(g: Graph, octree: Octree, fragments: AnyBuffer) -> None:
