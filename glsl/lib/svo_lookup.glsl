@@ -26,9 +26,9 @@ ViewOfVoxels view_of_voxels(vec3 direction) {
 vec4 sides_lookup(Node node, vec3 local, ViewOfVoxels view) {
     vec3 at = (vec3(brick_texel(node_brick(node))) + 0.5 + 2.0 * local) * u_octree.atlas_texel;
     vec3 z = at.z + vec3(view.sides * BRICK_SIDE) * u_octree.atlas_texel.z;
-    vec4 value = view.weights.x * textureLod(u_brick_atlas, vec3(at.xy, z.x), 0.0);
-    value += view.weights.y * textureLod(u_brick_atlas, vec3(at.xy, z.y), 0.0);
-    value += view.weights.z * textureLod(u_brick_atlas, vec3(at.xy, z.z), 0.0);
+    vec4 value = mean_of_sides(
+        textureLod(u_brick_atlas, vec3(at.xy, z.x), 0.0), textureLod(u_brick_atlas, vec3(at.xy, z.y), 0.0),
+        textureLod(u_brick_atlas, vec3(at.xy, z.z), 0.0), view.weights);
     return vec4(value.rgb * node_scale(node), value.a);
 }
 
