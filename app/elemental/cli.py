@@ -42,7 +42,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if error.filename is not None:
             raise  # not a stream
         _drop_output()
-        return _refuse(f"can't be written: {error.strerror}")
+        return _refuse(f"standard output: can't be written ({error.strerror or error})")
     except KeyboardInterrupt:
         return 130
     return 0
@@ -50,7 +50,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _drop_output() -> None:
     """Let what stdout still holds go nowhere, else Python complains of it at its end."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    if sys.stdout is not None:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _refuse(message: str) -> int:

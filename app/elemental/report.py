@@ -132,9 +132,12 @@ def settings_entry(settings: Settings) -> dict[str, Any]:
 
 def overflow_warnings(counters: Mapping[str, int]) -> list[str]:
     """One line for each counter of dropped things that is not zero, with what helps."""
-    dropped = {name: count for name, count in counters.items() if "dropped" in name and count}
     remedies = {"octree_bricks_dropped": "; raise gi.memory_budget_mb or lower gi.resolution"}
-    return [f"{n:,} {name.replace('_', ' ')}{remedies.get(name, '')}" for name, n in dropped.items()]
+    return [
+        f"{count:,} {name.replace('_', ' ')}{remedies.get(name, '')}"
+        for name, count in counters.items()
+        if "dropped" in name and count
+    ]
 
 
 def write_json(path: Path, content: Mapping[str, Any]) -> None:

@@ -132,7 +132,7 @@ _TABLE = (
         # 36: nine wide cones lose a third of a small lamp's light to the walls that they touch;
         # 63 cost 1.7 times as much (docs/gi.md).
         "gi.diffuse_cones", "choice", 36,
-        "cones over the sphere that gather diffuse light; the talk's 9 lose the light of small lamps",
+        "cones over the sphere that gather diffuse light; the talk's 9 lose a small lamp's light",
         unit="cones", choices=(9, 36, 63), source="[Mittring12] [Segovia06]",
     ),
     Setting(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -9,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from cli.process import APP, elemental
-from cli.small_scene import write_corner
+from cli.process import APP, assert_refused, elemental
+from cli.small_scene import corner, write_corner
 from elemental.flags import build_parser
 from elemental.settings import SETTINGS
 from elemental.ui.bindings import BINDINGS
@@ -39,6 +40,15 @@ def test_scenes_and_cameras_can_be_named(tmp_path: Path) -> None:
     assert "atrium" in scenes
 
 
+def test_a_scene_without_cameras_says_so(tmp_path: Path) -> None:
+    gltf = corner()
+    del gltf["cameras"], gltf["nodes"][3]["camera"]
+    (tmp_path / "blind.gltf").write_text(json.dumps(gltf))
+    result = elemental("list", "cameras", "blind.gltf", cwd=tmp_path)
+    assert (result.returncode, result.stdout) == (0, "")
+    assert result.stderr == "elemental: note: no cameras\n"
+
+
 def test_the_version_is_told() -> None:
     assert lines("--version") == ["elemental 0.1.0"]
 
@@ -56,10 +66,25 @@ def test_every_flag_has_one_line_of_help_with_its_default(command: str) -> None:
     assert "usage: elemental" in "".join(lines(command, "--help"))
 
 
-def test_a_closed_pipe_ends_quietly() -> None:
-    pipeline = f"{sys.executable} -m elemental list settings | true"
+def in_shell(words: str) -> subprocess.CompletedProcess[str]:
+    """``elemental WORDS`` with the shell's redirections."""
+    command = f"{sys.executable} -m elemental {words}"
     environment = os.environ | {"PYTHONPATH": str(APP)}
-    result = subprocess.run(
-        pipeline, shell=True, env=environment, capture_output=True, text=True, check=False
+    return subprocess.run(
+        command, shell=True, env=environment, capture_output=True, text=True, check=False
     )
-    assert result.stderr == ""
+
+
+def test_a_closed_pipe_ends_quietly() -> None:
+    assert in_shell("list settings | true").stderr == ""
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device of Linux")
+def test_a_full_disk_is_told_in_one_line() -> None:
+    for words in ("list settings", "list scenes"):
+        result = in_shell(f"{words} > /dev/full")
+        assert_refused(result, "No space left on device")
+
+
+def test_a_closed_output_is_told_in_one_line() -> None:
+    assert_refused(in_shell("list settings >&-"), "the standard output is closed")

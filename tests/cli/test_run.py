@@ -76,6 +76,35 @@ app.release()
 """
 
 
+PANELS = """
+import elemental.ui.app as ui
+from elemental.session import Viewpoint, set_stage
+from elemental.ui.window import Window
+
+words = ui.Run("corner.gltf", (96, 64), ["gi.enabled=false"], False, 1)
+stage = set_stage(words.scene, words.assignments, Viewpoint(), words.size)
+app = ui.App(Window(words.size, "elemental"), stage, words)
+drawn = []
+ui.draw_hud = lambda figures: drawn.append(figures.size)
+ui.draw_help = lambda: drawn.append("help")
+ui.draw_message = drawn.append
+
+def after(action):
+    app.act(action)
+    drawn.clear()
+    app.draw((96, 64))
+    return list(drawn)
+
+assert after("pause") == [(96, 64), "paused"], drawn
+assert after("pause") == [(96, 64), "playing"], drawn
+assert after("help") == ["help", "playing"], drawn
+assert after("help") == [(96, 64), "playing"], drawn
+app.device.storage_limit = 16 + 4 * 96 * 16
+assert after("hud") == ["playing"] and app.renderer.size == (48, 32), app.renderer.size
+app.release()
+"""
+
+
 def run_python(code: str, *words: str, folder: Path, display: str) -> tuple[int, str]:
     """Exit code and stderr of ``code`` as a script in ``folder``, where corner.gltf lies."""
     write_corner(folder)
@@ -100,6 +129,12 @@ def test_a_broken_shader_keeps_its_last_good_program(tmp_path: Path, display: st
     assert code == 0, stderr
     assert "keeps its last good program" in stderr
     assert "Traceback" not in stderr
+
+
+def test_help_covers_the_figures_and_a_size_the_driver_cannot_draw_is_scaled(
+    tmp_path: Path, display: str
+) -> None:
+    assert run_python(PANELS, folder=tmp_path, display=display) == (0, "")
 
 
 @pytest.mark.skipif(shutil.which("xdotool") is None, reason="xdotool is not installed")

@@ -113,6 +113,11 @@ def test_a_numbered_name_gets_each_frame_and_a_plain_one_the_last(tmp_path: Path
     assert (tmp_path / "last.png").read_bytes() == (tmp_path / names[2]).read_bytes()
 
 
+def test_a_name_of_250_bytes_can_be_written(tmp_path: Path) -> None:
+    name = "a" * 246 + ".png"
+    assert shot(tmp_path, "-o", name, "--set", "gi.enabled=false") == f"{name}\n"
+
+
 def test_cameras_by_name_and_by_place_agree(tmp_path: Path) -> None:
     fov = np.degrees(0.7)
     shot(tmp_path, "-o", "a.png", "--camera", "front")
@@ -161,5 +166,8 @@ def test_a_scene_that_overflows_its_memory_is_drawn_and_says_what_was_dropped(
     dropped = {n: c for n, c in report["counters"].items() if "dropped" in n and c}
     assert dropped
     assert len(report["warnings"]) == len(dropped)
-    assert all(line.startswith("elemental: warning: ") for line in result.stderr.splitlines())
-    assert "dropped" in result.stderr
+    told = [f"elemental: warning: {line}" for line in report["warnings"]]
+    told += [f"elemental: note: {line}" for line in report["notes"]]
+    assert result.stderr.splitlines() == told
+    remedy = "octree bricks dropped; raise gi.memory_budget_mb or lower gi.resolution"
+    assert remedy in result.stderr

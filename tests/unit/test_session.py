@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from cli.small_scene import corner as corner_gltf
 from cli.small_scene import write_corner
 from elemental.core.errors import InputError
 from elemental.core.images import write_exr
@@ -35,6 +37,32 @@ def test_a_scene_opens_with_its_settings(tmp_path: Path) -> None:
     assert scene.triangle_count == 6
     assert settings.changed() == {"exposure": 1.0}
     assert scene.lights == []  # the lamp emits: no default sun
+
+
+def test_a_scene_that_only_its_emission_lights_says_so(tmp_path: Path) -> None:
+    path = write_corner(tmp_path)
+    scene, _ = open_scene(str(path), ())
+    reason = "lit by its own emission only; --set sky.image=FILE adds a sky"
+    assert scene.notes == [f"{path}: {reason}"]
+    write_exr(tmp_path / "sky.exr", np.full((2, 4, 3), 0.5, np.float32))
+    scene, _ = open_scene(str(path), [f"sky.image={tmp_path / 'sky.exr'}"])
+    assert scene.notes == []
+
+
+def test_the_exposure_of_a_bright_sun_is_noted_unless_another_is_asked_for(tmp_path: Path) -> None:
+    gltf = corner_gltf()
+    gltf["extensionsUsed"] = ["KHR_lights_punctual"]
+    sun = {"type": "directional", "intensity": 1e5}
+    gltf["extensions"] = {"KHR_lights_punctual": {"lights": [sun]}}
+    gltf["nodes"][3]["extensions"] = {"KHR_lights_punctual": {"light": 0}}
+    path = tmp_path / "sunny.gltf"
+    path.write_text(json.dumps(gltf))
+    scene, settings = open_scene(str(path), ())
+    assert settings["exposure"] == -15.0
+    reason = "a sun of 100000 lux: exposure -15 EV; --set exposure=EV changes it"
+    assert scene.notes == [f"{path}: {reason}"]
+    scene, settings = open_scene(str(path), ["exposure=-12"])
+    assert (settings["exposure"], scene.notes) == (-12.0, [])
 
 
 def test_settings_lie_in_layers(tmp_path: Path) -> None:
@@ -112,8 +140,9 @@ def test_a_name_is_known_or_the_nearest_is_told() -> None:
     assert known_name("--view", "depth", names) == "depth"
     with pytest.raises(InputError, match="did you mean 'final'"):
         known_name("--view", "finale", names)
-    with pytest.raises(InputError, match="known: final, normal, depth"):
-        known_name("--view", "", names)
+    for far in ("", "colour"):
+        with pytest.raises(InputError, match="known: final, normal, depth"):
+            known_name("--view", far, names)
 
 
 def test_outputs_are_checked_before_work_is_spent(tmp_path: Path) -> None:
@@ -132,7 +161,14 @@ def test_outputs_are_checked_before_work_is_spent(tmp_path: Path) -> None:
         ("a%d.png", 12, "a12.png"),
         ("a%2d.exr", 7, "a07.exr"),
         ("100%.png", 7, "100%.png"),
+        ("a%099d.png", 7, f"a{7:099d}.png"),
     ],
 )
 def test_frame_numbers_in_names(pattern: str, frame: int, name: str) -> None:
     assert frame_file(Path("out") / pattern, frame) == Path("out") / name
+
+
+@pytest.mark.parametrize("pattern", ["q%99999999d.png", "q%0100d.png", "%d%100d.png"])
+def test_a_frame_number_of_a_hundred_digits_is_refused(pattern: str) -> None:
+    with pytest.raises(InputError, match="wider than 99 digits"):
+        frame_file(Path(pattern), 0)
