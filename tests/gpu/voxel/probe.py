@@ -53,23 +53,15 @@ def trace(
 
 
 def gather(stage: Stage, points: Array, normal: Array) -> Array:
-    """Irradiance / pi and visibility of the sky, (N, 4), at surface points: all diffuse cones."""
+    """Irradiance / pi at surface points, (N, 3): all diffuse cones, octree and sky."""
     points, normal = _rows(points, normal)
-    body = """
-        float weights = 0.0;
-        result = vec4(0.0);
-        for (int i = 0; i < CONE_COUNT; ++i) {
-            result += diffuse_cone(p, n, i);
-            weights += cone_group_weight(n, i);
-        }
-        result /= weights;
-    """
     return run_glsl(
         stage.device,
-        ["lib/diffuse_cone.glsl"],
-        body,
+        ["lib/voxel_gather.glsl"],
+        "gathered_radiance(p, n, 0.0)",
         {"p": points, "n": normal},
-        "vec4",
+        "vec3",
         reads={**stage.octree.tracing_reads(), **stage.sky.reads()},
         params={**stage.octree.params, **stage.sky.params()},
+        defines={"GATHER": 1},
     )

@@ -26,6 +26,15 @@ def turned(axis: Array, angle: float, *, to: tuple[float, float, float] = (0, 0,
     )
 
 
+def facing(normal: Array) -> Array:
+    """world_from_local: a turn that takes +y to ``normal``."""
+    unit = np.asarray(normal, np.float64) / np.linalg.norm(normal)
+    axis = np.cross([0.0, 1.0, 0.0], unit)
+    if np.linalg.norm(axis) < 1e-9:
+        axis = np.array([1.0, 0.0, 0.0])
+    return turned(axis, float(np.arccos(np.clip(unit[1], -1.0, 1.0))))
+
+
 def glowing(*radiance: float, **fields: Any) -> Material:
     """Black but for its own light."""
     emissive = np.resize(np.array(radiance, np.float32), 3)

@@ -118,11 +118,11 @@ def assert_sane(stage: Stage, full: Stage) -> None:
         assert np.isfinite(value).all()
         assert 0.0 <= value[:, 3].min() <= value[:, 3].max() <= 1.0
         assert 0.0 <= value[:, :3].min() <= value[:, :3].max() <= 1.01 * brightest
-    for value in (trace(stage, points, directions, 0.3), gather(stage, points, directions)):
+    traced, gathered = trace(stage, points, directions, 0.3), gather(stage, points, directions)
+    assert traced[:, 3].max() <= 1.001
+    for value in (traced[:, :3], gathered):
         assert np.isfinite(value).all()
-        assert value.min() >= 0.0
-        assert value[:, 3].max() <= 1.001
-        assert value[:, :3].max() <= 1.01 * brightest
+        assert 0.0 <= value.min() <= value.max() <= 1.01 * brightest
 
 
 SHARES = {
