@@ -100,7 +100,7 @@ def _fibonacci(count: int) -> Array:
 
 
 def _unit(v: Array) -> Array:
-    return v / np.linalg.norm(v, axis=1, keepdims=True)
+    return np.asarray(v / np.linalg.norm(v, axis=1, keepdims=True))
 
 
 def main() -> None:

@@ -13,7 +13,7 @@ sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "app")]
 
 from elemental.core.images import write_png  # noqa: E402  (the path comes first)
 from elemental.gpu.device import Device  # noqa: E402
-from image.golden_scenes import SCENES, draw  # noqa: E402
+from image.golden_scenes import SCENES, draw  # type: ignore[import-not-found]  # noqa: E402
 
 
 def main() -> None:

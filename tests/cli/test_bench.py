@@ -33,7 +33,7 @@ def test_a_still_scene_does_no_voxel_work_and_a_forced_rebuild_does(tmp_path: Pa
     assert not any("voxelize" in name for name in names)
     for entry in still["passes"]:
         assert entry["name"] in table
-        assert entry["frames"] == 3
+        assert entry["frames"] % 3 == 0  # passes of one name count together
         assert 0 <= entry["gpu_ms"]["min"] <= entry["gpu_ms"]["median"] <= entry["gpu_ms"]["p95"]
     assert still["frame_wall_ms"]["min"] >= still["frame_cpu_ms"]["min"] > 0
     assert still["counters"] == rebuilt["counters"]
