@@ -7,6 +7,7 @@ Frames of the whole renderer, looked at as irradiance / pi.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -95,25 +96,47 @@ def test_no_pattern_of_the_nine_cones_is_seen(diffuse_gi: Draw, cones: int) -> N
     assert pattern(image) <= 0.005
 
 
-def combined(device: Device, world: Scene, split: int, sub_images: Array) -> Array:
-    """`combine_diffuse` of sub-images that hold one value each, (9, 4)."""
-    gpu = GpuScene(device, world)
-    width, height = SIZE
-    eye = camera(vector(0.4, 2.0, 1.2), vector(0, 0, 0), fov_y=0.5)
-    values = sub_images.astype(np.float16).reshape(3, 3, 1, 1, 4)
-    texels = np.broadcast_to(values, (3, 3, height // 3, width // 3, 4))
-    texture = device.texture(
-        "cones", SIZE, RGBA16F, data=np.ascontiguousarray(texels.swapaxes(1, 2))
-    )
-    g = device.begin_frame()
-    view = pack_view(eye, SIZE, gpu.bounds)
-    gb = draw_gbuffer(g, view, gpu, SIZE)
-    radiance = g.texture("cones", SIZE, RGBA16F)
-    g.copy_texture(texture, radiance)
-    image = read(g, combine_diffuse(g, view, gb, radiance, split)).astype(np.float32)
-    for item in (texture, gpu):
-        item.release()
-    return image
+def by_cone(values: Array) -> Array:
+    """(H, W, 4) pixels, row 0 on top, that say (9, 4) values by the cone that each traces."""
+    y, x = np.mgrid[SIZE[1] - 1 : -1 : -1, 0 : SIZE[0]]
+    return np.asarray(values[x % 3 + 3 * (y % 3)])
+
+
+@dataclass
+class Combiner:
+    """The G-buffer of a scene seen from above, and what `combine_diffuse` makes of its cones."""
+
+    device: Device
+    world: Scene
+    split: int = SPLITS[0]
+
+    def depth(self) -> Array:
+        """(H, W) of the G-buffer, row 0 on top."""
+        return self._run(None)
+
+    def combine(self, pixels: Array) -> Array:
+        """(H, W, 4) float32 from (H, W, 4): what each pixel's own cone gathered; row 0 on top."""
+        return self._run(pixels).astype(np.float32)
+
+    def _run(self, pixels: Array | None) -> Array:
+        gpu = GpuScene(self.device, self.world)
+        eye = camera(vector(0.4, 2.0, 1.2), vector(0, 0, 0), fov_y=0.5)
+        g = self.device.begin_frame()
+        view = pack_view(eye, SIZE, gpu.bounds)
+        gb = draw_gbuffer(g, view, gpu, SIZE)
+        if pixels is None:
+            image = read(g, gb.depth)
+        else:
+            rows = pixels[::-1].astype(np.float16)
+            # (v, y, u, x) to (y, v, x, u): pixel 3v + y of sub-image y.
+            parts = rows.reshape(SIZE[1] // 3, 3, SIZE[0] // 3, 3, 4).transpose(1, 0, 3, 2, 4)
+            texture = self.device.texture("cones", SIZE, RGBA16F, data=np.ascontiguousarray(parts))
+            radiance = g.texture("cones", SIZE, RGBA16F)
+            g.copy_texture(texture, radiance)
+            image = read(g, combine_diffuse(g, view, gb, radiance, self.split))
+            texture.release()
+        gpu.release()
+        return image
 
 
 @pytest.mark.parametrize("normal", [(0, 1, 0), (0.2, 1, 0.4)])
@@ -121,12 +144,13 @@ def combined(device: Device, world: Scene, split: int, sub_images: Array) -> Arr
 def test_every_pixel_of_a_plane_weighs_the_nine_cones_alike(
     device: Device, split: int, normal: tuple[float, float, float]
 ) -> None:
-    """One value a sub-image: the combined image is constant to the rounding of half floats, at the
-    rim too; and the same for each single cone."""
+    """One value a cone: the combined image is constant to the rounding of half floats, at the rim
+    too; and the same for each single cone."""
     world = scene((mesh(quad(8.0)), facing(vector(*normal))))
+    combiner = Combiner(device, world, split)
     values = np.ones((9, 4))
     values[:, :3] = np.random.default_rng(1).uniform(0.1, 9.0, (9, 3))
-    image = combined(device, world, split, values)
+    image = combiner.combine(by_cone(values))
     assert image[..., :3].min() > 0.05
     spread = np.ptp(image, axis=(0, 1)) / image.mean(axis=(0, 1))
     assert spread.max() <= 2.0**-10
@@ -134,8 +158,19 @@ def test_every_pixel_of_a_plane_weighs_the_nine_cones_alike(
         single = np.zeros((9, 4))
         single[:, 3] = 1.0
         single[cone, :3] = 4.0
-        image = combined(device, world, split, single)[..., 0]
+        image = combiner.combine(by_cone(single))[..., 0]
         assert np.ptp(image) <= 2.0**-10 * 4.0, cone
+
+
+@pytest.mark.parametrize("split", SPLITS)
+def test_a_ramp_stays_a_ramp(device: Device, split: int) -> None:
+    """The tent's two samples of a cone have their centre at the pixel; no other filter's have."""
+    world = scene((mesh(quad(8.0)), facing(vector(0, 1, 0))))
+    y, x = np.mgrid[0 : SIZE[1], 0 : SIZE[0]]
+    ramp = 1.0 + x / SIZE[0] + 0.5 * y / SIZE[1]
+    image = Combiner(device, world, split).combine(np.repeat(ramp[..., None], 4, axis=2))
+    error = (image[..., 0] - ramp)[2:-2, 2:-2]
+    assert np.abs(error).max() <= 3.0 * 2.0**-10
 
 
 def test_edges_and_gaps_keep_the_mean(device: Device) -> None:
@@ -145,8 +180,30 @@ def test_edges_and_gaps_keep_the_mean(device: Device) -> None:
         (mesh(box((0.5, 0.5, 0.5))), facing(vector(0.3, 1, 0.2))),
         (mesh(box((0.1, 1.4, 0.1))), facing(vector(0.9, 1, 0.2))),
     )
-    image = combined(device, blocks, SPLITS[0], np.full((9, 4), 0.75))
-    surface = np.abs(image[..., 3] - 1.0) > 1e-3
-    assert surface.sum() > 500
-    image = image[surface]
+    combiner = Combiner(device, blocks)
+    depth = combiner.depth()
+    surface = depth < depth.max()
+    assert 500 < surface.sum() < surface.size
+    image = combiner.combine(np.full((*depth.shape, 4), 0.75))[surface]
     assert np.abs(image - 0.75).max() <= 0.75 * 2.0**-10
+
+
+def test_light_does_not_bleed_between_surfaces(device: Device) -> None:
+    """A plate that floats over a floor: each keeps its own light up to the plate's rim.
+
+    Only a corner borrows, where none of the 5x5 on its own surface traced one of its cones.
+    """
+    raised = np.eye(4, dtype=np.float32)
+    raised[1, 3] = 0.5
+    combiner = Combiner(device, scene((mesh(quad(8.0)), IDENTITY), (mesh(quad(0.4)), raised)))
+    plate = mesh(quad(0.4)), raised
+    alone = Combiner(device, scene(plate, (mesh(quad(8.0)), IDENTITY)))
+    depth = combiner.depth()
+    np.testing.assert_array_equal(depth, alone.depth())
+    without = Combiner(device, scene((mesh(quad(8.0)), IDENTITY))).depth()
+    above = depth < without - 0.002 * without.max()
+    assert 300 < above.sum() < above.size - 300
+    light = np.where(above[..., None], 1.0, 5.0) * np.ones(4)
+    image = combiner.combine(light)[..., 0]
+    bled = np.abs(image - light[..., 0]) > 0.01 * light[..., 0]
+    assert bled.sum() <= 8
