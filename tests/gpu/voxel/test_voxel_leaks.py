@@ -66,15 +66,15 @@ def arriving(stage: Stage, turn: Array) -> Array:
 
 
 REACHED = {
-    ("straight", 0): 0.06,
+    ("straight", 0): 0.005,
     ("straight", 2): 0.001,
     ("straight", 4): 0.001,
-    ("turned", 0): 0.18,
-    ("turned", 2): 0.02,
-    ("turned", 4): 0.01,
-    ("diagonal", 0): 0.22,
-    ("diagonal", 2): 0.05,
-    ("diagonal", 4): 0.035,
+    ("turned", 0): 0.12,
+    ("turned", 2): 0.005,
+    ("turned", 4): 0.005,
+    ("diagonal", 0): 0.12,
+    ("diagonal", 2): 0.005,
+    ("diagonal", 4): 0.003,
 }
 """Share of the sky's light that gets in, as a mean, by the room's turn and its walls' voxels."""
 
@@ -87,14 +87,6 @@ def test_little_of_the_sky_gets_into_a_closed_room(stage: MakeStage, turn: str, 
     assert light.max() <= 2.5 * REACHED[turn, wall] + 0.01
 
 
-@pytest.mark.xfail(strict=True, reason="sheets and thin slanted walls let 3 to 20 % through")
-@pytest.mark.parametrize(
-    ("turn", "wall"), [key for key, reached in REACHED.items() if reached > 0.02]
-)
-def test_none_of_the_sky_gets_into_a_closed_room(stage: MakeStage, turn: str, wall: int) -> None:
-    assert arriving(room(stage, TURNS[turn], wall, SKY), TURNS[turn]).mean() <= 0.01
-
-
 SUNLIT = 5.0 * 0.8 / np.pi
 """Radiance of a white wall that faces the sun."""
 
@@ -104,7 +96,7 @@ SUNLIT = 5.0 * 0.8 / np.pi
 def test_little_of_a_sunlit_outside_shows_inside(stage: MakeStage, turn: str, wall: int) -> None:
     light = arriving(room(stage, TURNS[turn], wall, None, SUN), TURNS[turn]) / SUNLIT
     print(f"sun in a {turn} room, walls of {wall}: {light.mean():.4f}, {light.max():.4f} at most")
-    assert light.mean() <= 0.06
+    assert light.mean() <= 0.045
     assert light.max() <= 0.12
 
 
