@@ -18,15 +18,18 @@ from elemental.gpu.device import Device
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import BufferHandle
 from elemental.passes.voxel import sizing
+from elemental.passes.voxel.grid import REGION_SIDE
 from elemental.passes.voxel.octree import Capacity, Counts, Octree
+from gpu.voxel.numpy_octree import DenseOctree
 from gpu.voxel.pools import ABSENT, Pools, read_leaves, read_sided
 from gpu.voxel.probe import gather, look_up, trace
-from gpu.voxel.scenes import jumble
+from gpu.voxel.scenes import grid_with, jumble
 from gpu.voxel.stage import BUDGET, Lit, MakeStage, Stage
 
 Array = npt.NDArray[Any]
 
-CANARY = 0xDEADBEEF
+CANARY = 22 << 20 | 21 << 10 | 20
+"""Read as a fragment, it says a place where the scene has nothing."""
 
 
 class GuardedGraph(Graph):
@@ -154,7 +157,27 @@ def test_nothing_is_written_past_a_full_pool(stage: MakeStage, jumbled: Stage, c
     if told.fragments >= whole.fragments:
         assert counts.tiles + counts.tiles_dropped == whole.tiles
         assert counts.bricks + counts.bricks_dropped == whole.bricks
+    if told == replace(full, fragments=told.fragments):
+        kept = DenseOctree.of(made.own_grid, made.fragment_points)
+        assert counts.bricks == sum(int(exists.sum()) for exists in kept.exists)
     assert_sane(made, jumbled)
+
+
+@pytest.mark.parametrize("scarce", ["bricks", "tiles"])
+def test_fragments_of_dropped_leaves_go_nowhere(stage: MakeStage, scarce: str) -> None:
+    """Not to the bricks above, whose attributes stay empty where regions have leaves of several
+    levels."""
+    offsets = np.random.default_rng(3).integers(-1, 2, (REGION_SIDE,) * 3)
+    grid = grid_with(offsets, (np.full(3, -1.0), np.full(3, 1.0)))
+    full = stage(jumble(), grid=grid, bounces=0)
+    told = replace(full.octree.capacity, **{scarce: getattr(full.counts, scarce) * 3 // 4})
+    made = stage(jumble(), grid=grid, capacity=told, bounces=0)
+    assert made.counts.bricks_dropped > 0
+    pools = Pools.read(made)
+    first = int(made.state["level_first"][grid.coarsest_leaf])
+    counted = made.octree.attributes.read(np.uint32).reshape(-1, 8, 4)[: made.counts.leaves, :, 3]
+    assert not counted[~pools.is_leaf[first:]].any()
+    assert 0 < counted.sum() < len(made.fragments)
 
 
 @pytest.mark.parametrize("scarce", ["fragments", "tiles", "bricks", "leaves", "interior"])
