@@ -2,24 +2,14 @@
 
 // Sides in the order of the brick's stacks: +x -x +y -y +z -z, named by their outward normal.
 // A ray that travels along -x looks at the +x side.
-vec3 side_normal(uint side) {
-    float direction = (side & 1u) == 0u ? 1.0 : -1.0;
-    return direction * vec3(side < 2u, side >= 2u && side < 4u, side >= 4u);
-}
 
 // Which three sides a ray along `direction` sees.
 uvec3 sides_seen(vec3 direction) {
     return uvec3(0u, 2u, 4u) + uvec3(greaterThan(direction, vec3(0.0)));
 }
 
-// Squared components of a unit vector sum to one. What is below SIDE_WEIGHT_LEAST is spread over the
-// others, so that lookups of sides that hardly count can be left out.
-const float SIDE_WEIGHT_LEAST = 0.01;
-
-vec3 side_weights(vec3 direction) {
-    vec3 weights = max(direction * direction - SIDE_WEIGHT_LEAST, 0.0);
-    return weights / (weights.x + weights.y + weights.z);
-}
+// Squared components of a unit vector sum to one.
+vec3 side_weights(vec3 direction) { return direction * direction; }
 
 // What a ray sees of three sides, by their weights. Radiance is averaged as its square root: where the
 // side that a ray meets head-on is dark, what the sides beside it show is mostly of the other face of

@@ -6,7 +6,6 @@
 // Node n owns the 2x2x2 points 2n + {0,1}^3 and filters over 2n + {0,1,2}^3.
 // [Mittring12 "Sparse Voxel Octree"]
 
-const int OCTREE_MAX_LEVELS = 10;      // levels 0..9: at most 1024 lattice points a side
 const uint NODE_BRICK_MASK = 0x00ffffffu; // low 24 bits of Node.brick: brick index + 1, 0 = empty
 const uint BRICK_LEAF = 0x80000000u;
 const uint NODE_SCALE_SHIFT = 24u;     // high 8 bits: the brick's HDR multiplier is 2^(code - 128)
@@ -22,17 +21,19 @@ const uint SCAN_BLOCKS = 2048u;        // 64-node blocks that one such group sum
 const uint REGION_SIDE = 8u;           // the scene is split into 8^3 regions, each with its leaf level
 const int REGION_LEVEL = 4;            // nodes of this level are as large as a region
 
-// A node is two words. On the finest level, child is the leaf brick's slot + 1. Above it: index of the tile of eight children + 1; 0 = a leaf (or a node whose tile was
-// dropped), which answers for finer levels too; NODE_HOLLOW = no child is there, finer levels are empty.
-// brick: see NODE_BRICK_MASK; where it is 0, `child` holds the level of the largest empty ancestor.
+// A node is two words.
+// brick: see NODE_BRICK_MASK. child, where there is a brick: the leaf brick's slot + 1 on the finest
+// level; above it the index of the tile of eight children + 1, or NODE_HOLLOW where no child is
+// there (finer levels are empty), or 0 for a leaf of a coarser region, which answers for finer levels
+// too. child, where there is no brick: the level of the largest empty ancestor.
 const uint NODE_HOLLOW = 0xffffffffu;
 struct Node {
     uint child;
     uint brick;
 };
 
-// One rasterized sample of a surface. position: 10:10:10 coordinates on the finest lattice from the scene's corner;
-// albedo: RGBA8, a = opacity; normal: snorm8 xyz; emissive: RGB9E5 radiance.
+// One rasterized sample of a surface. position: 10:10:10 coordinates on the finest lattice from the
+// scene's corner; albedo: RGBA8, a = opacity; normal: snorm8 xyz; emissive: RGB9E5 radiance.
 struct VoxelFragment {
     uint position;
     uint albedo;
@@ -103,5 +104,4 @@ layout(std140) uniform Octree {
     uint interior_capacity;  // bricks that can hold filtered HDR values
     vec3 atlas_texel;      // 1 / size in texels
     vec3 leaf_atlas_texel;
-    vec3 ambient;        // radiance that every voxel receives besides
 } u_octree;

@@ -61,7 +61,7 @@ void main() {
     float certainty = min(squared * 4.0, 1.0);
     vec4 albedo = unpackUnorm4x8(voxel.albedo);
     vec3 incident = direct_irradiance(p_ws, normal, certainty, spacing) * INVERSE_PI;
-    incident += u_octree.ambient + gathered_radiance(p_ws, normal, spacing);
+    incident += gathered_radiance(p_ws, normal, spacing);
     vec3 outgoing = min(albedo.rgb * incident + rgb9e5_unpack(voxel.emissive), HALF_MAX);
     radiance[index] = uvec2(packHalf2x16(outgoing.rg * albedo.a), packHalf2x16(vec2(outgoing.b, 1.0) * albedo.a));
 }

@@ -163,7 +163,6 @@ class Survey:
             interior_capacity=capacity.interior,
             atlas_texel=sided.texel,
             leaf_atlas_texel=leaf.texel,
-            ambient=(0.0, 0.0, 0.0),
         )
 
     def release(self) -> None:
