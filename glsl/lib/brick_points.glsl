@@ -57,6 +57,15 @@ uint scale_code(float x) {
     return uint(clamp(exponent + NODE_SCALE_BIAS, 1, 255));
 }
 
-float inverse_scale_of(uint code) { return exp2(float(NODE_SCALE_BIAS) - float(code)); }
+// The nodes once more, to write: of `brick` only the high bits change, so that other threads may
+// descend meanwhile.
+layout(std430) buffer NodeWords { Node node_words[]; };
+
+// Notes the multiplier of a brick whose largest value is `maximum` in its node; returns its inverse.
+float store_multiplier(uint brick, float maximum) {
+    uint code = scale_code(maximum);
+    node_words[bricks[brick].node & BRICK_NODE_MASK].brick = (brick + 1u) | (code << NODE_SCALE_SHIFT);
+    return exp2(float(NODE_SCALE_BIAS) - float(code));
+}
 
 float largest(vec3 v) { return max(v.r, max(v.g, v.b)); }

@@ -11,7 +11,6 @@
 
 layout(local_size_x = 64) in;
 
-layout(std430) buffer NodeWords { Node node_words[]; };
 layout(rgba8) writeonly uniform image3D u_atlas;
 
 // The largest value of a voxel's sides. Some side of a leaf shows its radiance whole.
@@ -36,9 +35,7 @@ void main() {
         uint owner = owner_of_point(points, texel_of_point(uint(findLSB(left))), voxel);
         maximum = max(maximum, largest_side(owner, voxel));
     }
-    uint code = scale_code(maximum);
-    float inverse_scale = inverse_scale_of(code);
-    node_words[bricks[brick].node & BRICK_NODE_MASK].brick = (brick + 1u) | (code << NODE_SCALE_SHIFT);
+    float inverse_scale = store_multiplier(brick, maximum);
 
     // The atlas was cleared: points without anything stay as they are.
     ivec3 base = brick_texel(brick);

@@ -6,7 +6,6 @@
 
 layout(local_size_x = 64) in;
 
-layout(std430) buffer NodeWords { Node node_words[]; };
 layout(rgba8) writeonly uniform image3D u_colors;
 layout(rgba8_snorm) writeonly uniform image3D u_normals;
 
@@ -21,9 +20,7 @@ void main() {
         uint owner = owner_of_point(points, texel_of_point(uint(findLSB(left))), voxel);
         maximum = max(maximum, largest(unpack_half4(radiance[leaf_slot(owner) * BRICK_VOXELS + voxel]).rgb));
     }
-    uint code = scale_code(maximum);
-    float inverse_scale = inverse_scale_of(code);
-    node_words[bricks[brick].node & BRICK_NODE_MASK].brick = (brick + 1u) | (code << NODE_SCALE_SHIFT);
+    float inverse_scale = store_multiplier(brick, maximum);
 
     // The atlases were cleared: points without anything stay as they are.
     ivec3 base = leaf_texel(slot);

@@ -3,6 +3,7 @@
 // with albedo, add emissive]
 
 #include "lib/dispatch.glsl"
+#include "lib/ambient_cube.glsl"
 #include "lib/packing.glsl"
 #include "lib/lights.glsl"
 #include "lib/shadow.glsl"
@@ -58,7 +59,7 @@ void main() {
     vec3 mean_normal = unpackSnorm4x8(voxel.normal).xyz;
     float squared = dot(mean_normal, mean_normal);
     vec3 normal = mean_normal * inversesqrt(max(squared, 1e-6));
-    float certainty = min(squared * 4.0, 1.0);
+    float certainty = normal_certainty(squared);
     vec4 albedo = unpackUnorm4x8(voxel.albedo);
     vec3 incident = direct_irradiance(p_ws, normal, certainty, spacing) * INVERSE_PI;
     incident += gathered_radiance(p_ws, normal, spacing);

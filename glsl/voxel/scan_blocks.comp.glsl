@@ -2,14 +2,13 @@
 // x counts bricks (existing nodes), y tiles (sibling groups below the dense levels).
 
 #include "lib/node_counts.glsl"
+#include "lib/prefix_sum.glsl"
 
 layout(local_size_x = 256) in;
 
 layout(std430) readonly buffer NodeBits { uint node_words[]; };
 // A rank a block, then a sum a group.
 layout(std430) writeonly buffer Ranks { uvec2 ranks[]; };
-
-shared uvec2 sums[SCAN_GROUP];
 
 void main() {
     const uint blocks_a_thread = SCAN_BLOCKS / SCAN_GROUP;
@@ -24,17 +23,10 @@ void main() {
         uvec2 bits = uvec2(node_words[block * 2u], node_words[block * 2u + 1u]);
         total += node_counts(bits, grid_of_block(block));
     }
-    sums[thread] = total;
-    barrier();
-    for (uint stride = 1u; stride < SCAN_GROUP; stride <<= 1) {
-        uvec2 left = thread >= stride ? sums[thread - stride] : uvec2(0u);
-        barrier();
-        sums[thread] += left;
-        barrier();
-    }
-    uvec2 before = sums[thread] - total;
+    uvec2 through = group_inclusive_sum(thread, total);
+    uvec2 before = through - total;
     for (uint i = 0u; i < blocks_a_thread; ++i) {
         if (first + i < u_octree.block_count) ranks[first + i] = before + counts[i];
     }
-    if (thread == SCAN_GROUP - 1u) ranks[u_octree.block_count + gl_WorkGroupID.x] = sums[thread];
+    if (thread == SCAN_GROUP - 1u) ranks[u_octree.block_count + gl_WorkGroupID.x] = through;
 }

@@ -3,6 +3,7 @@
 
 #include "lib/dispatch.glsl"
 #include "lib/node_counts.glsl"
+#include "lib/prefix_sum.glsl"
 
 layout(local_size_x = 256) in;
 
@@ -10,8 +11,6 @@ layout(std430) readonly buffer NodeBits { uint node_words[]; };
 // A rank a block, then a sum a group: see scan_blocks. Coherent: one thread reads what others wrote.
 layout(std430) coherent buffer Ranks { uvec2 ranks[]; };
 layout(std430) buffer State { OctreeState octree_state; };
-
-shared uvec2 sums[SCAN_GROUP];
 
 DispatchArgs dispatch_args(uint threads, uint group) {
     uvec3 groups = linear_dispatch_args(threads, group);
@@ -53,15 +52,8 @@ void main() {
     uint first = thread * a_thread;
     uvec2 total = uvec2(0u);
     for (uint i = first; i < min(first + a_thread, group_count); ++i) total += ranks[u_octree.block_count + i];
-    sums[thread] = total;
-    barrier();
-    for (uint stride = 1u; stride < SCAN_GROUP; stride <<= 1) {
-        uvec2 left = thread >= stride ? sums[thread - stride] : uvec2(0u);
-        barrier();
-        sums[thread] += left;
-        barrier();
-    }
-    uvec2 before = sums[thread] - total;
+    uvec2 through = group_inclusive_sum(thread, total);
+    uvec2 before = through - total;
     for (uint i = first; i < min(first + a_thread, group_count); ++i) {
         uvec2 sum = ranks[u_octree.block_count + i];
         ranks[u_octree.block_count + i] = before;
@@ -71,7 +63,7 @@ void main() {
     barrier();
     if (thread != 0u) return;
 
-    uvec2 all = sums[SCAN_GROUP - 1u];
+    uvec2 all = scan_sums[SCAN_GROUP - 1u];
     int levels = u_octree.leaf_level + 1;
     // Bricks come coarsest level first, so a clipped pool loses leaves of the finest level.
     uint before_leaves = bricks_before_level(u_octree.coarsest_leaf, all.x);
