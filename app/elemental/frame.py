@@ -16,8 +16,11 @@ from elemental.gpu.device import Device
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import TextureHandle
 from elemental.gpu.resources import Texture
+from elemental.passes.area_lights import pack_area_lights
 from elemental.passes.camera_view import pack_view
-from elemental.passes.cone_trace.diffuse import CONES, combine_diffuse, trace_diffuse
+from elemental.passes.cone_trace.area_lights import trace_area_lights
+from elemental.passes.cone_trace.diffuse import combine_diffuse, trace_diffuse
+from elemental.passes.cone_trace.interleave import SUB_IMAGES
 from elemental.passes.cone_trace.specular import LIST_HEADER_BYTES, trace_specular
 from elemental.passes.forward import draw_translucent
 from elemental.passes.gbuffer import GBuffer, draw_gbuffer
@@ -34,6 +37,7 @@ from elemental.passes.voxel.grid import Grid
 from elemental.passes.voxel.lighting import VoxelLighting
 from elemental.passes.voxel.octree import Octree
 from elemental.passes.voxel.view import voxel_view
+from elemental.scene.area_lights import area_lights
 from elemental.scene.model import Camera, Scene
 from elemental.settings import Settings
 
@@ -84,7 +88,9 @@ class Renderer:
         self.scene = scene
         self.settings = settings
         self.size = size
-        self._meshes = GpuScene(device, scene)
+        self._area_lights = area_lights(scene) if settings["gi.area_lights"] else []
+        self._area_block = pack_area_lights(self._area_lights)
+        self._meshes = GpuScene(device, scene, self._area_lights)
         self._shadows = ShadowMaps(device, _shadow_settings(settings))
         self._sky = Sky(device)
         self._voxels: VoxelLighting | None = None
@@ -133,7 +139,7 @@ class Renderer:
         octree: Octree | None = None
         if voxels is not None:
             light_key = (shadows.light_key, sky.key)
-            octree = voxels.update(g, shadows, sky, light_key, s["gi.bounces"])
+            octree = voxels.update(g, shadows, sky, self._area_block, light_key, s["gi.bounces"])
         if view_name == "voxels" and octree is not None:
             return voxel_view(g, view, octree, self.size, s["voxels.level"])
 
@@ -170,10 +176,14 @@ class Renderer:
         self, g: Graph, view: Block, gb: GBuffer, octree: Octree, sky: Sky
     ) -> tuple[TextureHandle, TextureHandle]:
         """(irradiance / pi, radiance along the mirrored eye vector)."""
-        split = self.settings["gi.diffuse_cones"] // CONES
+        split = self.settings["gi.diffuse_cones"] // SUB_IMAGES
         radiance = trace_diffuse(g, view, gb, octree, sky, split)
-        diffuse_gi = combine_diffuse(g, view, gb, radiance, split)
-        return diffuse_gi, trace_specular(g, view, gb, octree, sky, diffuse_gi)
+        block = self._area_block
+        area = None
+        if self._area_lights:
+            area = (trace_area_lights(g, view, gb, octree, block), block)
+        diffuse_gi, broad_gi = combine_diffuse(g, view, gb, radiance, split, area)
+        return diffuse_gi, trace_specular(g, view, gb, octree, sky, block, broad_gi)
 
     def _prepare_voxels(self, view: str) -> VoxelLighting | None:
         """The octree, counted and allocated when it is first needed."""
@@ -187,7 +197,7 @@ class Renderer:
                 self._meshes,
                 Grid.fit(self._meshes.bounds, s["gi.resolution"], self.scene.regions),
                 area_m2=sizing.projected_area(self.scene),
-                max_emission=sizing.max_emission(self.scene),
+                max_emission=sizing.max_emission(self.scene, self._area_lights),
                 budget_bytes=s["gi.memory_budget_mb"] * MIB,
             )
         return self._voxels

@@ -124,6 +124,11 @@ _TABLE = (
         unit="voxels", choices=(64, 128, 256, 512), source="[Mittring12] [Crassin11]",
     ),
     Setting(
+        "gi.area_lights", "bool", True,
+        "emissive parallelograms light by closed form, through aimed cones; off: as voxels",
+        source="[Mittring12] [Heitz18]",
+    ),
+    Setting(
         "gi.specular", "bool", True,
         "glossy indirect light, one cone a pixel along the mirrored eye vector",
         source="[Mittring12]",

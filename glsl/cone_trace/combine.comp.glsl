@@ -3,18 +3,36 @@
 //
 // The 5x5 filter is the tent (3 - |x|)(3 - |y|): it gives each of the nine directions the same
 // weight, so the 3x3 pattern cancels.
+//
+// AREA_LIGHTS adds the light of emissive parallelograms: at each pixel its closed form without shadow,
+// times the filtered share of it that arrives. [Heitz18 "Combining analytic direct illumination and
+// stochastic shadows"]
+
+#ifndef AREA_LIGHTS
+#define AREA_LIGHTS 0
+#endif
 
 #include "lib/cone_directions.glsl"
 #include "lib/interleave.glsl"
 #include "lib/packing.glsl"
 #include "lib/view.glsl"
 #include "shared/gbuffer.glsl"
+#if AREA_LIGHTS
+#include "lib/area_light.glsl"
+#include "lib/brdf.glsl"
+#endif
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 uniform sampler2D u_radiance;
 uniform sampler2D u_depth;
 uniform sampler2D u_gbuffer_a;
+#if AREA_LIGHTS
+uniform sampler2D u_area_irradiance;
+uniform sampler2D u_gbuffer_d;
+// What a broad lobe around the mirrored eye vector takes instead.
+layout(rgba16f) writeonly uniform image2D o_broad_gi;
+#endif
 layout(rgba16f) writeonly uniform image2D o_diffuse_gi;
 
 // A neighbour counts while its distance from the pixel's tangent plane is below this share of its
@@ -42,12 +60,18 @@ void main() {
     float depth = texelFetch(u_depth, pixel, 0).r;
     if (depth >= DEPTH_CLEAR) {
         imageStore(o_diffuse_gi, pixel, vec4(0.0, 0.0, 0.0, 1.0));
+#if AREA_LIGHTS
+        imageStore(o_broad_gi, pixel, vec4(0.0, 0.0, 0.0, 1.0));
+#endif
         return;
     }
     vec3 normal = normal10_decode(texelFetch(u_gbuffer_a, pixel, 0).xyz);
     vec3 p_ws = position_ws_at((vec2(pixel) + 0.5) * u_view.viewport_px.zw, depth);
     float inverse_tolerance = 1.0 / (PLANE_TOLERANCE * distance(p_ws, u_view.eye_ws));
 
+#if AREA_LIGHTS
+    vec4 from_area = vec4(0.0);
+#endif
     // The pixels of one cone are three apart: of each axis' five, one or two.
     vec4 sum = vec4(0.0);
     float weights = 0.0;
@@ -63,7 +87,11 @@ void main() {
                 float similarity = surface_similarity(at, p_ws, normal, inverse_tolerance);
                 float tent = float((3 - abs(x)) * (3 - abs(y)));
                 float weight = tent * max(similarity, LEAST_SIMILARITY);
-                vec4 traced = texelFetch(u_radiance, sub_image_texel(at, size), 0);
+                ivec2 texel = sub_image_texel(at, size);
+#if AREA_LIGHTS
+                from_area += weight * texelFetch(u_area_irradiance, texel, 0);
+#endif
+                vec4 traced = texelFetch(u_radiance, texel, 0);
                 if (traced.a < 0.0) continue;  // rejected
                 cone_sum += traced * weight;
                 cone_samples += weight;
@@ -75,5 +103,17 @@ void main() {
         sum += cone_sum * (weight / cone_samples);
         weights += weight;
     }
-    imageStore(o_diffuse_gi, pixel, sum / max(weights, 1e-6));
+    vec4 gathered = sum / max(weights, 1e-6);
+#if AREA_LIGHTS
+    vec4 broad = gathered;
+    if (from_area.a > 0.0) {
+        gathered.rgb += from_area.rgb * (luminance(area_irradiance(p_ws, normal)) * INVERSE_PI / from_area.a);
+        float half_angle = specular_cone_half_angle(specular_power_decode(texelFetch(u_gbuffer_d, pixel, 0).r));
+        vec3 mirrored = reflect(normalize(p_ws - u_view.eye_ws), normal);
+        float visible = luminance(from_area.rgb) / from_area.a;
+        broad.rgb += visible * area_lobe_radiance(p_ws, normal, mirrored, half_angle);
+    }
+    imageStore(o_broad_gi, pixel, broad);
+#endif
+    imageStore(o_diffuse_gi, pixel, gathered);
 }

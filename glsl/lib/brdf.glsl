@@ -1,5 +1,5 @@
 // The talk's shading formulas and what joins them to metallic-roughness materials.
-const float PI = 3.14159265358979;
+#include "lib/math.glsl"
 
 // [Mittring12 "New Specular Power Encoding"]: NewEncode, NewDecode.
 const float SPECULAR_POWER_CODE_RANGE = 19.0;

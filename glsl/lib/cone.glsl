@@ -75,7 +75,7 @@ ConeSample cone_sample(vec3 p, float lod, vec3 direction, vec3 inverse_direction
     return ConeSample(value, 0.0);
 }
 
-// Height over the plane of the surface that a cone leaves: finest voxels at the start, and a voxel of
+// Height over the plane of a surface at which a cone ends: finest voxels at the start, and a voxel of
 // the way. Samples stay CLEARANCE_VOXELS of their own widths above it; a cone near the plane takes
 // narrower ones, or it would find the surface that it comes from and darken it. [inferred]
 struct Clearance {
@@ -85,10 +85,13 @@ struct Clearance {
 const float CLEARANCE_VOXELS = 2.5;
 const Clearance NO_SURFACE = Clearance(1e9, 0.0);
 
-// Pos: world space. ConeAngle: half the aperture in radians. Radiance, and how much is hidden.
-// start_m: distance along the cone at which the march begins, the start bias.
-// `clearance` keeps the cone's samples off the surface that it leaves.
-vec4 cone_trace_above(vec3 Pos, vec3 Direction, float ConeAngle, float start_m, Clearance clearance) {
+float height_at(Clearance c, float t) { return c.start + c.slope * t; }
+
+// What a march along a cone gathers between two distances from Pos, which is in world space.
+// ConeAngle: half the aperture in radians. Radiance, and how much is hidden. The cone's samples stay
+// off the surface that it leaves and off the one that it ends at.
+vec4 cone_trace_between(vec3 Pos, vec3 Direction, float ConeAngle, float start_m, float end_m,
+                        Clearance leaves, Clearance reaches) {
     float side = 2.0 * float(u_octree.resolution);
     vec3 origin = octree_from_world(Pos) * side;
     vec3 guarded = mix(Direction, vec3(1e-6), lessThan(abs(Direction), vec3(1e-6)));
@@ -97,9 +100,10 @@ vec4 cone_trace_above(vec3 Pos, vec3 Direction, float ConeAngle, float start_m, 
     float widening = 2.0 * tan(ConeAngle);
     float lod_last = float(u_octree.leaf_level) - 1e-3;
     float t = start_m / u_octree.voxel_m;
+    float end = end_m / u_octree.voxel_m;
     vec4 gathered = vec4(0.0);
-    for (int i = 0; i < CONE_STEPS_MAX; ++i) {
-        float height = clearance.start + clearance.slope * t;
+    for (int i = 0; i < CONE_STEPS_MAX && t < end; ++i) {
+        float height = min(height_at(leaves, t), height_at(reaches, t));
         float width = max(min(widening * t / CONE_FOOTPRINT, height / CLEARANCE_VOXELS), 1.0);
         vec3 p = origin + Direction * t;
         if (any(lessThan(p, vec3(0.0))) || any(greaterThanEqual(p, vec3(side)))) break;
@@ -120,6 +124,13 @@ vec4 cone_trace_above(vec3 Pos, vec3 Direction, float ConeAngle, float start_m, 
         }
     }
     return gathered;
+}
+
+const float CONE_ENDLESS = 1e30;  // m
+
+// start_m: distance along the cone at which the march begins, the start bias.
+vec4 cone_trace_above(vec3 Pos, vec3 Direction, float ConeAngle, float start_m, Clearance clearance) {
+    return cone_trace_between(Pos, Direction, ConeAngle, start_m, CONE_ENDLESS, clearance, NO_SURFACE);
 }
 
 vec4 cone_trace_from(vec3 Pos, vec3 Direction, float ConeAngle, float start_m) {

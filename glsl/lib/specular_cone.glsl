@@ -1,5 +1,6 @@
 // The specular cone of a pixel: as wide as the lobe of its surface.
 
+#include "lib/area_light.glsl"
 #include "lib/cone.glsl"
 #include "lib/brdf.glsl"
 #include "lib/packing.glsl"
@@ -9,6 +10,8 @@
 // Finest voxels off the surface along the normal, and along the cone.
 const float SPECULAR_NORMAL_BIAS = 1.0;
 const float SPECULAR_START = 1.0;
+// Voxels before and behind an area light in which its own voxels would hide it.
+const float AREA_LIGHT_DEPTH = 1.5;
 
 // Radiance along the mirrored eye vector, and the visibility of the sky there.
 vec4 specular_cone(vec3 p_ws, vec3 normal, float half_angle) {
@@ -16,9 +19,17 @@ vec4 specular_cone(vec3 p_ws, vec3 normal, float half_angle) {
     vec3 direction = reflect(eye, normal);
     // A mirrored ray of a shading normal may point into the surface.
     direction = normalize(direction + normal * max(0.0, 0.02 - dot(direction, normal)));
-    vec3 origin = p_ws + normal * (SPECULAR_NORMAL_BIAS * u_octree.voxel_m);
+    float voxel = u_octree.voxel_m;
+    vec3 origin = p_ws + normal * (SPECULAR_NORMAL_BIAS * voxel);
     Clearance clearance = Clearance(SPECULAR_NORMAL_BIAS, dot(direction, normal));
-    vec4 cone = cone_trace_above(origin, direction, half_angle, SPECULAR_START * u_octree.voxel_m, clearance);
+    AreaHit hit = hit_area_lights(origin, direction, half_angle);
+    float end = hit.share > 0.0 ? hit.distance_m - AREA_LIGHT_DEPTH * voxel : CONE_ENDLESS;
+    vec4 cone = cone_trace_between(origin, direction, half_angle, SPECULAR_START * voxel, end, clearance, NO_SURFACE);
+    if (hit.share > 0.0) {
+        cone += (1.0 - cone.a) * hit.share * vec4(hit.radiance, 1.0);
+        float behind = hit.distance_m + AREA_LIGHT_DEPTH * voxel;
+        if (cone.a < CONE_OPAQUE) cone += (1.0 - cone.a) * cone_trace_above(origin, direction, half_angle, behind, clearance);
+    }
     float visible = 1.0 - cone.a;
     return vec4(cone.rgb + visible * sky_radiance(direction, half_angle), visible);
 }

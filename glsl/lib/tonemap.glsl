@@ -11,11 +11,6 @@ vec3 srgb_encode(vec3 linear) {
     return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308)));
 }
 
-// Rec. 709 luminance of linear colour.
-float luminance(vec3 linear) {
-    return dot(linear, vec3(0.2126, 0.7152, 0.0722));
-}
-
 uint hash_pcg(uint x) {  // [Jarzynski20 "Hash Functions for GPU Rendering"]
     uint state = x * 747796405u + 2891336453u;
     uint word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;

@@ -6,6 +6,7 @@
 #include "lib/ambient_cube.glsl"
 #include "lib/packing.glsl"
 #include "lib/lights.glsl"
+#include "lib/math.glsl"
 #include "lib/shadow.glsl"
 #include "lib/voxel_gather.glsl"
 
@@ -16,7 +17,6 @@ layout(std430) readonly buffer Bricks { Brick bricks[]; };
 layout(std430) readonly buffer Attributes { VoxelAttributes attributes[]; };
 layout(std430) writeonly buffer Radiance { uvec2 radiance[]; };
 
-const float INVERSE_PI = 0.3183098862;
 // A voxel's point lies up to sqrt(3)/2 voxels from its surface; this clears it.
 const float SHADOW_OFFSET_VOXELS = 1.0;
 // Mean of the clamped cosine over all directions, for voxels without a normal of their own.

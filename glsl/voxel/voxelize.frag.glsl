@@ -14,6 +14,7 @@ in vec2 v_uv0;
 in vec2 v_uv1;
 in vec4 v_color;
 flat in uint v_material;
+flat in float v_emission;
 
 layout(std430) buffer State { OctreeState octree_state; };
 layout(std430) buffer Fragments { VoxelFragment fragments[]; };
@@ -43,6 +44,6 @@ void main() {
     fragment.position = pack_position(point);
     fragment.albedo = packUnorm4x8(vec4(surface.albedo, opacity));
     fragment.normal = normal_snorm8_pack(normalize(v_normal_ws));
-    fragment.emissive = rgb9e5_pack(surface.emissive);
+    fragment.emissive = rgb9e5_pack(surface.emissive * v_emission);
     fragments[index] = fragment;
 }

@@ -22,7 +22,7 @@ import numpy as np
 from elemental.core import transforms
 from elemental.scene.model import Camera, FloatArray, Light, Scene
 from reference.bsdf import Entry, MaterialConverter
-from reference.ply import world_meshes, write_ply
+from reference.ply import two_sheets, world_meshes, write_ply
 
 MASK_SAMPLES = 16
 """Samples that look for a light source in a pixel."""
@@ -100,17 +100,26 @@ def _sensor(camera: Camera, job: Job) -> Entry:
 
 
 def _surfaces(scene: Scene, folder: Path) -> dict[str, Entry]:
-    """One shape for each material."""
+    """One shape for each material; two where both sides emit."""
     converter = MaterialConverter(scene)
     uv_sets = {k: converter.uv_set(m) for k, m in enumerate(scene.materials)}
     shapes: dict[str, Entry] = {}
     for index, mesh in world_meshes(scene, uv_sets).items():
-        path = folder / f"material{index}.ply"
-        write_ply(path, mesh)
+        material = scene.materials[index]
         color = mesh.colors.astype(np.float32).mean(axis=0) / np.float32(255.0)
-        bsdf = converter.bsdf(scene.materials[index], color)
-        shapes[f"surface{index}"] = {"type": "ply", "filename": str(path), "bsdf": bsdf}
+        bsdf = converter.bsdf(material, color)
+        # mitsuba's area lights shine to the front: a back that shines too is a mesh of its own.
+        emits_twice = material.double_sided and (material.emits or material.unlit)
+        sheets = two_sheets(mesh) if emits_twice else (mesh,)
+        for name, sheet in zip(_sheet_names(index), sheets, strict=False):
+            path = folder / f"{name}.ply"
+            write_ply(path, sheet)
+            shapes[name] = {"type": "ply", "filename": str(path), "bsdf": bsdf}
     return shapes
+
+
+def _sheet_names(material: int) -> tuple[str, str]:
+    return f"surface{material}", f"surface{material}_back"
 
 
 def _emitting_surfaces(scene: Scene, surfaces: dict[str, Entry]) -> dict[str, Entry]:
@@ -118,10 +127,10 @@ def _emitting_surfaces(scene: Scene, surfaces: dict[str, Entry]) -> dict[str, En
     converter = MaterialConverter(scene)
     found = {}
     for index, material in enumerate(scene.materials):
-        name = f"surface{index}"
-        if name in surfaces and (material.emits or material.unlit):
-            light = {"type": "area", "radiance": converter.radiance(material)}
-            found[name] = {**surfaces[name], "emitter": light}
+        for name in _sheet_names(index):
+            if name in surfaces and (material.emits or material.unlit):
+                light = {"type": "area", "radiance": converter.radiance(material)}
+                found[name] = {**surfaces[name], "emitter": light}
     return found
 
 

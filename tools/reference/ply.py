@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from elemental.core import transforms
 from elemental.scene.model import FloatArray, IndexArray, Mesh, Scene
+
+SHEET_GAP = 1e-5
+"""Half the distance between the two sides of a sheet, as a part of its size."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +44,17 @@ def _placed(mesh: Mesh, world_from_local: FloatArray, uv_set: int) -> WorldMesh:
         mesh.uv1 if uv_set else mesh.uv0,
         mesh.colors,
         mesh.indices.reshape(-1, 3),
+    )
+
+
+def two_sheets(mesh: WorldMesh) -> tuple[WorldMesh, WorldMesh]:
+    """A mesh and its back side, a hair's breadth apart, so that a ray meets what it faces first."""
+    size = float(np.ptp(mesh.positions, axis=0).max())
+    shift = (SHEET_GAP * size * mesh.normals).astype(np.float32)
+    back = mesh.triangles[:, ::-1]
+    return (
+        replace(mesh, positions=mesh.positions + shift),
+        replace(mesh, positions=mesh.positions - shift, normals=-mesh.normals, triangles=back),
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +22,7 @@ from elemental.passes.scene_pack import (
     Array,
     Batch,
 )
+from elemental.scene.area_lights import AreaLight
 from elemental.scene.model import AlphaMode, Scene
 from elemental.scene.model import Texture as Image
 
@@ -38,10 +39,11 @@ class GpuScene:
     """A scene's geometry, uploaded once: merged vertex and index buffers drawn indirectly.
 
     `instances` and `materials` are the storage blocks of glsl/shared. `version` counts the changes
-    of geometry that cached shadow maps follow. `bounds` is the scene's (min, max) in m.
+    of geometry that cached shadow maps follow. `bounds` is the scene's (min, max) in m. What
+    `area_lights` emit is left out of the voxels.
     """
 
-    def __init__(self, device: Device, scene: Scene) -> None:
+    def __init__(self, device: Device, scene: Scene, area_lights: Sequence[AreaLight] = ()) -> None:
         self.version = 0
         self.bounds = scene.bounds()
         self.triangle_count = scene.triangle_count
@@ -53,7 +55,7 @@ class GpuScene:
             self._buffers.append(device.buffer(f"scene.{name}", values, category="meshes"))
             return self._buffers[-1]
 
-        self.instances = upload("instances", scene_pack.pack_instances(scene))
+        self.instances = upload("instances", scene_pack.pack_instances(scene, area_lights))
         self.materials = upload("materials", scene_pack.pack_materials(scene))
         indices = upload("indices", geometry.indices)
         position = (upload("positions", geometry.positions), "3f", ("a_position",))

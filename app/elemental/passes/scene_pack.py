@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from typing import Any, TypeAlias
@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from elemental.core import transforms
 from elemental.core.layout import layouts, pack_array
+from elemental.scene.area_lights import AreaLight
 from elemental.scene.model import AlphaMode, Material, Scene, TextureSlot
 
 Array: TypeAlias = npt.NDArray[Any]
@@ -161,8 +162,10 @@ def slot_mask(held: Iterable[bool]) -> int:
     return sum(1 << index for index, holds in enumerate(held) if holds)
 
 
-def pack_instances(scene: Scene) -> Array:
+def pack_instances(scene: Scene, area_lights: Sequence[AreaLight] = ()) -> Array:
     """(instances,) of the GLSL struct Instance, in the scene's own order."""
+    flags = np.zeros(len(scene.instances), np.uint32)
+    flags[[light.instance for light in area_lights]] = layouts().constant("INSTANCE_AREA_LIGHT")
     matrices = np.array([instance.world_from_local for instance in scene.instances])
     normals = np.tile(np.eye(4, dtype=np.float32), (len(matrices), 1, 1))
     normals[:, :3, :3] = [transforms.normal_matrix(matrix) for matrix in matrices]
@@ -172,6 +175,7 @@ def pack_instances(scene: Scene) -> Array:
         world_from_local=matrices,
         normal_from_local=normals,
         material=[scene.meshes[instance.mesh].material for instance in scene.instances],
+        flags=flags,
     )
 
 

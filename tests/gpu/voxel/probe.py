@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from elemental.passes.area_lights import pack_area_lights
+from elemental.scene.area_lights import AreaLight
 from glsl.harness import run_glsl
 from gpu.voxel.stage import Stage
 
@@ -52,8 +55,10 @@ def trace(
     )
 
 
-def gather(stage: Stage, points: Array, normal: Array) -> Array:
-    """Irradiance / pi at surface points, (N, 3): all diffuse cones, octree and sky."""
+def gather(
+    stage: Stage, points: Array, normal: Array, area_lights: Sequence[AreaLight] = ()
+) -> Array:
+    """Irradiance / pi at surface points, (N, 3): all diffuse cones, octree, sky and area lights."""
     points, normal = _rows(points, normal)
     return run_glsl(
         stage.device,
@@ -62,6 +67,10 @@ def gather(stage: Stage, points: Array, normal: Array) -> Array:
         {"p": points, "n": normal},
         "vec3",
         reads={**stage.octree.tracing_reads(), **stage.sky.reads()},
-        params={**stage.octree.params, **stage.sky.params()},
+        params={
+            "AreaLights": pack_area_lights(area_lights),
+            **stage.octree.params,
+            **stage.sky.params(),
+        },
         defines={"GATHER": 1},
     )

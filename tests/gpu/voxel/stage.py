@@ -12,6 +12,7 @@ from elemental.core.layout import layouts
 from elemental.gpu.device import Device
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import BufferHandle
+from elemental.passes.area_lights import pack_area_lights
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.shadow import ShadowMaps, update_shadows
 from elemental.passes.shadow_plan import ShadowSettings
@@ -137,7 +138,9 @@ class Stage(Lit):
         """Light, filter and compress anew."""
         g = self.begin()
         for bounce in range(bounces):
-            light_voxels(g, self.octree, self.shadows, self.sky, gather=bounce > 0)
+            light_voxels(
+                g, self.octree, self.shadows, self.sky, pack_area_lights([]), gather=bounce > 0
+            )
             sided = filter_levels(g, self.octree)
             compress(g, self.octree, sided)
         g.keep(sided)

@@ -133,7 +133,8 @@ class Combiner:
             texture = self.device.texture("cones", SIZE, RGBA16F, data=np.ascontiguousarray(parts))
             radiance = g.texture("cones", SIZE, RGBA16F)
             g.copy_texture(texture, radiance)
-            image = read(g, combine_diffuse(g, view, gb, radiance, self.split))
+            diffuse, _ = combine_diffuse(g, view, gb, radiance, self.split, None)
+            image = read(g, diffuse)
             texture.release()
         gpu.release()
         return image

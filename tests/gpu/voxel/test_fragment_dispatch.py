@@ -12,6 +12,7 @@ import pytest
 from elemental.gpu.device import Device
 from elemental.gpu.passes import ComputePass
 from elemental.gpu.resources import Buffer, Texture
+from elemental.passes.area_lights import pack_area_lights
 from elemental.passes.voxel.grid import Grid
 from gpu.rig import IDENTITY, mesh, scene, vector
 from gpu.voxel.digest import contents
@@ -60,7 +61,7 @@ def test_no_frame_waits_for_what_the_gpu_counted(
         raise AssertionError("a frame must not wait for the GPU")
 
     g = lit.begin()
-    octree = voxels.update(g, lit.shadows, lit.sky, lit.light_key, bounces=1)
+    octree = voxels.update(g, lit.shadows, lit.sky, pack_area_lights([]), lit.light_key, bounces=1)
     named = {node.name.split(".")[0]: node for node in g.passes if isinstance(node, ComputePass)}
     for name in ("voxel/mark", "voxel/accumulate", "voxel/resolve", "light voxels", "filter"):
         assert named[name].indirect is not None, name

@@ -17,6 +17,7 @@ from elemental.core.layout import layouts
 from elemental.gpu.device import Device
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import BufferHandle
+from elemental.passes.area_lights import pack_area_lights
 from elemental.passes.voxel import sizing
 from elemental.passes.voxel.grid import REGION_SIDE
 from elemental.passes.voxel.octree import Capacity, Counts, Octree
@@ -192,7 +193,7 @@ def test_the_next_frames_grow_what_was_too_small(
     dropped = []
     for _ in range(4):
         g = lit.begin()
-        voxels.update(g, lit.shadows, lit.sky, lit.light_key, bounces=1)
+        voxels.update(g, lit.shadows, lit.sky, pack_area_lights([]), lit.light_key, bounces=1)
         g.execute()
         device.finish()
         dropped.append(voxels.counts.overflowed)
@@ -208,7 +209,7 @@ def test_drops_are_reported_by_what_dropped(device: Device, jumbled: Stage) -> N
     lit = Lit(device, jumble())
     voxels = lit.lighting(64, capacity=replace(jumbled.octree.capacity, fragments=1000, bricks=400))
     g = lit.begin()
-    voxels.update(g, lit.shadows, lit.sky, lit.light_key, bounces=1)
+    voxels.update(g, lit.shadows, lit.sky, pack_area_lights([]), lit.light_key, bounces=1)
     g.execute()
     device.finish()
     counters = voxels.counters()
@@ -230,7 +231,7 @@ def test_a_budget_too_small_is_kept_and_the_drops_stay_counted(device: Device) -
     names: list[list[str]] = []
     for _ in range(3):
         g = lit.begin()
-        voxels.update(g, lit.shadows, lit.sky, lit.light_key, bounces=1)
+        voxels.update(g, lit.shadows, lit.sky, pack_area_lights([]), lit.light_key, bounces=1)
         names.append([node.name for node in g.passes])
         g.execute()
         device.finish()

@@ -11,6 +11,7 @@ import numpy.typing as npt
 import pytest
 
 from elemental.gpu.device import Device
+from elemental.passes.area_lights import pack_area_lights
 from elemental.scene.model import Environment, Light, Scene
 from gpu.rig import at, scene, sun, vector
 from gpu.voxel.pools import Pools, leaf_values
@@ -113,7 +114,7 @@ def test_a_change_of_light_lights_anew_without_building(device: Device) -> None:
 
     def ran(bounces: int = 1) -> set[str]:
         g = lit.begin()
-        voxels.update(g, lit.shadows, lit.sky, lit.light_key, bounces)
+        voxels.update(g, lit.shadows, lit.sky, pack_area_lights([]), lit.light_key, bounces)
         names = [node.name for node in g.passes]
         g.execute()
         return {stage for stage in STAGES if any(name.startswith(stage) for name in names)}

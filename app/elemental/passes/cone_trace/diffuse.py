@@ -5,20 +5,23 @@ from __future__ import annotations
 from elemental.core.layout import Block
 from elemental.gpu.formats import RGBA16F
 from elemental.gpu.graph import Graph
-from elemental.gpu.refs import TextureHandle
+from elemental.gpu.refs import Ref, TextureHandle
 from elemental.gpu.shaders import Compute
+from elemental.passes.cone_trace.interleave import sub_image_groups, sub_images_size
 from elemental.passes.gbuffer import GBuffer
 from elemental.passes.sky import Sky
 from elemental.passes.voxel.octree import Octree
 
-CONES = 9
-"""Sub-images of the 3x3 pattern: CONE_COUNT of glsl/lib/cone_directions.glsl."""
 SPLITS = (1, 4, 7)
 """Narrower cones that each of them may be traced as."""
 TRACE = {n: Compute("cone_trace/diffuse.comp.glsl", defines={"CONE_SPLIT": n}) for n in SPLITS}
-COMBINE = {n: Compute("cone_trace/combine.comp.glsl", defines={"CONE_SPLIT": n}) for n in SPLITS}
-GROUP = 8
-"""Threads a side of a work group."""
+COMBINE = {
+    (split, area): Compute(
+        "cone_trace/combine.comp.glsl", defines={"CONE_SPLIT": split, "AREA_LIGHTS": int(area)}
+    )
+    for split in SPLITS
+    for area in (False, True)
+}
 
 
 def trace_diffuse(
@@ -29,8 +32,7 @@ def trace_diffuse(
     rgb: W/(m^2 sr); a: visibility of the sky, -1 where the cone is behind the surface.
     ``split``: of SPLITS.
     """
-    width, height = (-(-side // 3) for side in gb.depth.size[:2])
-    radiance = g.texture("cones.diffuse", size=(3 * width, 3 * height), format=RGBA16F)
+    radiance = g.texture("cones.diffuse", size=sub_images_size(gb), format=RGBA16F)
     g.compute(
         TRACE[split],
         "cones.diffuse",
@@ -42,25 +44,38 @@ def trace_diffuse(
         },
         writes={"o_radiance": radiance},
         params={"View": view, **octree.params, **sky.params()},
-        groups=(-(-width // GROUP), -(-height // GROUP), CONES),
+        groups=sub_image_groups(gb),
     )
     return radiance
 
 
 def combine_diffuse(
-    g: Graph, view: Block, gb: GBuffer, radiance: TextureHandle, split: int
-) -> TextureHandle:
-    """Irradiance / pi at every pixel, (H, W) RGBA16F; a: visibility of the sky, 0..1.
+    g: Graph,
+    view: Block,
+    gb: GBuffer,
+    radiance: TextureHandle,
+    split: int,
+    area: tuple[TextureHandle, Block] | None,
+) -> tuple[TextureHandle, TextureHandle]:
+    """(irradiance / pi, radiance in a broad specular lobe), (H, W) RGBA16F.
 
-    ``split``: as for `trace_diffuse`.
+    a: visibility of the sky. They differ by the light of ``area``: what `trace_area_lights` made,
+    and its AreaLights. ``split``: as for `trace_diffuse`.
     """
-    diffuse = g.texture("diffuse_gi", like=gb.depth, format=RGBA16F)
+    reads: dict[str, Ref] = {"u_radiance": radiance, "u_depth": gb.depth, "u_gbuffer_a": gb.a}
+    params = {"View": view}
+    diffuse = broad = g.texture("diffuse_gi", like=gb.depth, format=RGBA16F)
+    writes: dict[str, Ref] = {"o_diffuse_gi": diffuse}
+    if area is not None:
+        reads["u_area_irradiance"], params["AreaLights"] = area
+        reads["u_gbuffer_d"] = gb.d
+        writes["o_broad_gi"] = broad = g.texture("broad_gi", like=gb.depth, format=RGBA16F)
     g.compute(
-        COMBINE[split],
+        COMBINE[split, area is not None],
         "cones.combine",
-        reads={"u_radiance": radiance, "u_depth": gb.depth, "u_gbuffer_a": gb.a},
-        writes={"o_diffuse_gi": diffuse},
-        params={"View": view},
+        reads=reads,
+        writes=writes,
+        params=params,
         threads=gb.depth.size[:2],
     )
-    return diffuse
+    return diffuse, broad

@@ -18,7 +18,13 @@ LIST_HEADER_BYTES = 16
 
 
 def trace_specular(
-    g: Graph, view: Block, gb: GBuffer, octree: Octree, sky: Sky, diffuse_gi: TextureHandle
+    g: Graph,
+    view: Block,
+    gb: GBuffer,
+    octree: Octree,
+    sky: Sky,
+    area_lights: Block,
+    diffuse_gi: TextureHandle,
 ) -> TextureHandle:
     """Radiance along the mirrored eye vector, (H, W) RGBA16F; a: visibility of the sky.
 
@@ -45,7 +51,7 @@ def trace_specular(
         "cones.specular",
         reads={**surface, "u_gbuffer_a": gb.a, **octree.tracing_reads(), **sky.reads()},
         writes={"o_specular_gi": specular, "SpecularList": pixels},
-        params={"View": view, **octree.params, **sky.params()},
+        params={"View": view, "AreaLights": area_lights, **octree.params, **sky.params()},
         indirect=(pixels, 0),
     )
     return specular

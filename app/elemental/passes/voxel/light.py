@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from elemental.core.layout import Block
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import BufferHandle
 from elemental.gpu.shaders import Compute
@@ -23,10 +24,13 @@ COMPRESS_LEAVES = Compute("voxel/compress_leaves.comp.glsl")
 SIDED_BYTES_A_BRICK = 8 * 6 * 8
 
 
-def light_voxels(g: Graph, octree: Octree, shadows: ShadowMaps, sky: Sky, gather: bool) -> None:
+def light_voxels(
+    g: Graph, octree: Octree, shadows: ShadowMaps, sky: Sky, area_lights: Block, gather: bool
+) -> None:
     """Radiance of every leaf voxel: emission and direct light through the shadow maps.
 
-    ``gather``: also what arrives by cones through the octree's present radiance, one more bounce.
+    ``gather``: also what arrives by cones through the octree's present radiance and from
+    ``area_lights``, one more bounce.
     """
     reads = {
         "State": octree.state,
@@ -37,7 +41,7 @@ def light_voxels(g: Graph, octree: Octree, shadows: ShadowMaps, sky: Sky, gather
     params = {**octree.params, **shadows.params()}
     if gather:
         reads |= {**octree.tracing_reads(), **sky.reads()}
-        params |= sky.params()
+        params |= {"AreaLights": area_lights, **sky.params()}
     g.compute(
         LIGHT_AND_GATHER if gather else LIGHT,
         "light voxels",

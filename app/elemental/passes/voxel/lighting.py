@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable
 from typing import TYPE_CHECKING
 
+from elemental.core.layout import Block
 from elemental.gpu.device import Device
 from elemental.gpu.graph import Graph
 from elemental.passes.scene_gpu import GpuScene
@@ -55,7 +56,13 @@ class VoxelLighting:
             self._built_version = None
 
     def update(
-        self, g: Graph, shadows: ShadowMaps, sky: Sky, light_key: Hashable, bounces: int
+        self,
+        g: Graph,
+        shadows: ShadowMaps,
+        sky: Sky,
+        area_lights: Block,
+        light_key: Hashable,
+        bounces: int,
     ) -> Octree:
         """Add the passes that this frame needs: none where nothing changed.
 
@@ -68,10 +75,10 @@ class VoxelLighting:
             g.read_later(self.octree.state, self._counted)
             self._built_version = self.scene.version
             self._lit_by = None
-        key = (light_key, bounces)
+        key = (light_key, area_lights.tobytes(), bounces)
         if key != self._lit_by:
             for bounce in range(max(bounces, 1)):
-                light_voxels(g, self.octree, shadows, sky, gather=bounce > 0)
+                light_voxels(g, self.octree, shadows, sky, area_lights, gather=bounce > 0)
                 compress(g, self.octree, filter_levels(g, self.octree))
             self._lit_by = key
         return self.octree

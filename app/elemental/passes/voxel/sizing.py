@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +13,7 @@ from elemental.passes.voxel.build import find_nodes
 from elemental.passes.voxel.grid import Grid
 from elemental.passes.voxel.octree import Capacity, Counts, Survey
 from elemental.passes.voxel.voxelize import voxelize
+from elemental.scene.area_lights import AreaLight
 from elemental.scene.model import Scene
 
 UNBOUNDED = 0xFFFFFFFF
@@ -44,10 +46,16 @@ def projected_area(scene: Scene) -> float:
     return total
 
 
-def max_emission(scene: Scene) -> float:
-    """The largest radiance that a material emits; an unlit one shows its base colour."""
-    emitted = [float(m.emissive.max()) for m in scene.materials]
-    unlit = [float(m.base_color[:3].max()) for m in scene.materials if m.unlit]
+def max_emission(scene: Scene, area_lights: Sequence[AreaLight] = ()) -> float:
+    """The largest radiance that voxels emit: not that of ``area_lights``.
+
+    An unlit material shows its base colour.
+    """
+    elsewhere = {light.instance for light in area_lights}
+    used = {i.mesh for n, i in enumerate(scene.instances) if n not in elsewhere}
+    materials = [scene.materials[scene.meshes[mesh].material] for mesh in used]
+    emitted = [float(m.emissive.max()) for m in materials]
+    unlit = [float(m.base_color[:3].max()) for m in materials if m.unlit]
     return max([0.0, *emitted, *unlit])
 
 

@@ -1,0 +1,29 @@
+"""The area lights that shaders loop over."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from elemental.core.layout import Block, layouts, pack, pack_array
+from elemental.scene.area_lights import FACES_MAX, AreaLight
+
+
+def pack_area_lights(lights: Sequence[AreaLight]) -> Block:
+    """The AreaLights block of glsl/shared/area_light.glsl; at most FACES_MAX of them."""
+    # A parallelogram without extent would divide by its area: those that are left over have one.
+    unused = FACES_MAX - len(lights)
+    edges_u = np.array([light.edge_u for light in lights] + [(1.0, 0.0, 0.0)] * unused)
+    edges_v = np.array([light.edge_v for light in lights] + [(0.0, 1.0, 0.0)] * unused)
+    faces = pack_array(
+        layouts().struct("AreaLight", "std140"),
+        FACES_MAX,
+        corner_ws=[light.corner for light in lights] + [np.zeros(3)] * unused,
+        edge_u_ws=edges_u,
+        edge_v_ws=edges_v,
+        area_m2=np.linalg.norm(np.cross(edges_u, edges_v), axis=1),
+        radiance=[light.radiance for light in lights] + [np.zeros(3)] * unused,
+        both_sides=[float(light.both_sides) for light in lights] + [0.0] * unused,
+    )
+    return pack(layouts().block("AreaLights"), faces=faces, count=len(lights))

@@ -1,0 +1,146 @@
+"""Emissive parallelograms, whose light is known in closed form; other emitters shine as voxels.
+
+[Mittring12 "Voxel Lighting": shadowed area lights from emissive materials]
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from elemental.scene.model import FloatArray, Mesh, Scene
+
+FACES_A_MESH_MAX = 9
+FACES_MAX = 16
+"""AREA_LIGHTS_MAX of glsl/shared/area_light.glsl."""
+LEAST_SHARE = 0.01
+"""Of the scene's flux: what makes less is left to the voxels, where it costs nothing more."""
+FLATNESS = 1e-3
+"""How far a corner may be off the parallelogram's, by the length of its diagonal."""
+
+
+@dataclass(frozen=True)
+class AreaLight:
+    """A face that emits the same radiance everywhere and in all directions before it.
+
+    corner, edge_u, edge_v (3,) float32 m, world space: points are corner + s edge_u + t edge_v with
+    s, t in 0..1, and cross(edge_u, edge_v) points to its front; radiance (3,) float32 nit;
+    `instance` is the index of what it belongs to in Scene.instances.
+    """
+
+    instance: int
+    corner: FloatArray
+    edge_u: FloatArray
+    edge_v: FloatArray
+    radiance: FloatArray
+    both_sides: bool
+
+    @property
+    def flux(self) -> float:
+        """Emitted by the front, summed over the three channels, W."""
+        area = np.linalg.norm(np.cross(self.edge_u.astype(float), self.edge_v.astype(float)))
+        return float(math.pi * area * self.radiance.sum())
+
+
+def area_lights(scene: Scene) -> list[AreaLight]:
+    """The faces of all instances that emit evenly and are made of few parallelograms.
+
+    Of an instance all faces or none; the strongest first, at most FACES_MAX.
+    """
+    faces_of = {
+        number: parallelograms(mesh)
+        for number, mesh in enumerate(scene.meshes)
+        if _emits_evenly(scene, mesh)
+    }
+    least = LEAST_SHARE * _flux_from_outside(scene)
+    lamps = []
+    for number, instance in enumerate(scene.instances):
+        faces = faces_of.get(instance.mesh)
+        if faces is None:
+            continue
+        lamp = [_placed(scene, number, face) for face in faces]
+        flux = sum(face.flux for face in lamp)
+        if flux > least:
+            lamps.append((flux, lamp))
+    lamps.sort(key=lambda entry: -entry[0])
+    chosen: list[AreaLight] = []
+    for _, lamp in lamps:
+        if len(chosen) + len(lamp) <= FACES_MAX:
+            chosen += lamp
+    return chosen
+
+
+def parallelograms(mesh: Mesh) -> npt.NDArray[np.float64] | None:
+    """(F, 3, 3) corner, edge_u, edge_v of each of the mesh's faces, in its own space.
+
+    None where the triangles don't pair up into at most FACES_A_MESH_MAX parallelograms.
+    """
+    triangles = mesh.positions[mesh.indices.reshape(-1, 3)].astype(np.float64)
+    if len(triangles) % 2 or not 2 <= len(triangles) <= 2 * FACES_A_MESH_MAX:
+        return None
+    left = list(triangles)
+    faces = []
+    while left:
+        first = left.pop(0)
+        found = next(
+            ((k, f) for k, other in enumerate(left) if (f := _join(first, other)) is not None), None
+        )
+        if found is None:
+            return None
+        left.pop(found[0])
+        faces.append(found[1])
+    return np.array(faces)
+
+
+def _join(a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> FloatArray | None:
+    """(3, 3) corner and edges where two triangles (3, 3) are the halves of a parallelogram."""
+    for turn in range(3):
+        apex, second, third = np.roll(a, -turn, axis=0)  # b lies behind the edge second-third
+        opposite = second + third - apex
+        tolerance = FLATNESS * float(np.linalg.norm(third - second))
+        wanted = np.array([opposite, third, second])
+        if any(np.abs(np.roll(b, -k, axis=0) - wanted).max() <= tolerance for k in range(3)):
+            return np.array([apex, second - apex, third - apex])
+    return None
+
+
+def _emits_evenly(scene: Scene, mesh: Mesh) -> bool:
+    material = scene.materials[mesh.material]
+    plain = material.emissive_texture is None and material.alpha_mode == "opaque"
+    return plain and material.emits and not material.unlit
+
+
+def _placed(scene: Scene, number: int, face: npt.NDArray[np.float64]) -> AreaLight:
+    instance = scene.instances[number]
+    material = scene.materials[scene.meshes[instance.mesh].material]
+    matrix = instance.world_from_local.astype(np.float64)
+    linear = matrix[:3, :3]
+    corner = linear @ face[0] + matrix[:3, 3]
+    edges = face[1:] @ linear.T
+    return AreaLight(
+        instance=number,
+        corner=corner.astype(np.float32),
+        edge_u=edges[0].astype(np.float32),
+        edge_v=edges[1].astype(np.float32),
+        radiance=material.emissive.astype(np.float32),
+        both_sides=material.double_sided,
+    )
+
+
+def _flux_from_outside(scene: Scene) -> float:
+    """What suns, sky and punctual lights send into the scene, W over three channels, roughly."""
+    low, high = scene.bounds()
+    radius = 0.5 * float(np.linalg.norm(high.astype(np.float64) - low))
+    disc = math.pi * radius**2
+    total = 0.0
+    for light in scene.lights:
+        reach = disc if light.kind == "directional" else 4.0 * math.pi
+        total += float(light.color.sum()) * light.intensity * reach
+    sky = scene.environment
+    if sky is not None:
+        mean = np.ones(3) if sky.radiance is None else sky.radiance.mean(axis=(0, 1))
+        total += float((mean * sky.tint).sum()) * sky.intensity * math.pi * disc
+    return total

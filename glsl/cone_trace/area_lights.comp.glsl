@@ -1,0 +1,38 @@
+// Emissive parallelograms, one cone a pixel: each of the nine of the interleaved 3x3 pattern looks at
+// another part of their light. [Mittring12 "Voxel Lighting": shadowed area lights from emissive
+// materials], [Segovia06]
+
+#include "lib/area_shadow.glsl"
+#include "lib/interleave.glsl"
+#include "lib/packing.glsl"
+#include "lib/view.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+uniform sampler2D u_depth;
+uniform sampler2D u_gbuffer_a;
+// Irradiance with shadow; luminance of it without.
+layout(rgba16f) writeonly uniform image2D o_irradiance;
+
+void main() {
+    ivec2 size = ivec2(u_view.viewport_px.xy);
+    ivec2 part = sub_image_size(size);
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(at, part))) return;
+    int stratum = int(gl_WorkGroupID.z);
+    ivec2 pixel = at * 3 + cone_offset(stratum);
+    if (any(greaterThanEqual(pixel, size))) return;
+
+    vec4 result = vec4(0.0);
+    float depth = texelFetch(u_depth, pixel, 0).r;
+    if (depth < 1.0) {
+        vec3 normal = normal10_decode(texelFetch(u_gbuffer_a, pixel, 0).xyz);
+        vec3 p_ws = position_ws_at((vec2(pixel) + 0.5) * u_view.viewport_px.zw, depth);
+        AreaSample s = sample_area_lights(p_ws, normal, stratum);
+        if (s.face >= 0 && dot(s.point_ws - p_ws, normal) > 0.0) {
+            float visible = area_visibility(p_ws, normal, s.face, s.point_ws, s.radius);
+            result = vec4(s.irradiance * visible, luminance(s.irradiance));
+        }
+    }
+    imageStore(o_irradiance, at + part * cone_offset(stratum), result);
+}

@@ -1,0 +1,181 @@
+// Light from emissive parallelograms: irradiance in closed form, and where on them to look.
+// [Lambert 1760], [Baum89 "Improving radiosity solutions through the use of analytically determined
+// form-factors"]
+
+#include "lib/color.glsl"
+#include "lib/math.glsl"
+#include "shared/area_light.glsl"
+
+
+// Part of the vector irradiance along the normal that the edge between two directions, both above
+// the horizon, brings: their angle times the normal's share of the plane through them.
+float edge_irradiance(vec3 a, vec3 b, vec3 normal) {
+    vec3 across = cross(a, b);
+    float sine = length(across);
+    return sine > 0.0 ? dot(across, normal) * (atan(sine, dot(a, b)) / sine) : 0.0;
+}
+
+// Signed distance of p from the plane of a face; its front is positive.
+float height_over_face(AreaLight face, vec3 p_ws) {
+    return dot(p_ws - face.corner_ws, cross(face.edge_u_ws, face.edge_v_ws)) / face.area_m2;
+}
+
+// Of a face's size: what is so near its plane is the face itself, by rounding, and gets nothing.
+const float LEAST_HEIGHT = 1e-3;
+
+// Integral of the cosine over the part of the face above the horizon, sr: irradiance by its radiance.
+// Edges are clipped to the horizon; where the outline dips below, it is closed along it.
+float face_irradiance(AreaLight face, vec3 p_ws, vec3 normal) {
+    float height = height_over_face(face, p_ws);
+    if (face.both_sides != 0.0) height = abs(height);
+    if (height < LEAST_HEIGHT * sqrt(face.area_m2)) return 0.0;
+    vec3 first = face.corner_ws - p_ws;
+    vec3 corners[4] = vec3[4](first, first + face.edge_u_ws, first + face.edge_u_ws + face.edge_v_ws,
+                              first + face.edge_v_ws);
+    float sum = 0.0;
+    vec3 leaves = vec3(0.0);
+    vec3 enters = vec3(0.0);
+    for (int i = 0; i < 4; ++i) {
+        vec3 a = corners[i];
+        vec3 b = corners[(i + 1) & 3];
+        float above_a = dot(a, normal);
+        float above_b = dot(b, normal);
+        if (max(above_a, above_b) <= 0.0) continue;
+        vec3 crossing = mix(a, b, clamp(above_a / (above_a - above_b), 0.0, 1.0));
+        if (above_a < 0.0) {
+            a = crossing;
+            enters = crossing;
+        }
+        if (above_b < 0.0) {
+            b = crossing;
+            leaves = crossing;
+        }
+        sum += edge_irradiance(a, b, normal);
+    }
+    if (leaves != enters) sum += edge_irradiance(leaves, enters, normal);
+    return 0.5 * abs(sum);
+}
+
+// Light of all faces without shadow.
+vec3 area_irradiance(vec3 p_ws, vec3 normal) {
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < u_area_lights.count; ++i) {
+        sum += u_area_lights.faces[i].radiance * face_irradiance(u_area_lights.faces[i], p_ws, normal);
+    }
+    return sum;
+}
+
+// The faces' light is seen through so many cones, each for a part of it: see interleave.glsl.
+const int AREA_STRATA = 9;
+
+struct AreaSample {
+    int face;           // -1: no light arrives
+    vec3 point_ws;      // the middle of the part
+    float radius;       // of a disc as large as the part, m
+    vec3 irradiance;    // of the part without shadow, times AREA_STRATA
+};
+
+// A ninth of a face, 3x3.
+AreaLight part_of_face(AreaLight face, int part) {
+    face.corner_ws += (float(part % 3) * face.edge_u_ws + float(part / 3) * face.edge_v_ws) / 3.0;
+    face.edge_u_ws /= 3.0;
+    face.edge_v_ws /= 3.0;
+    face.area_m2 /= 9.0;
+    return face;
+}
+
+// A lone face is cut into 3x3. Of several, each gets as many of the parts as its share of the light,
+// at points of a lattice of rank one.
+AreaSample sample_area_lights(vec3 p_ws, vec3 normal, int stratum) {
+    float from_face[AREA_LIGHTS_MAX];
+    float total = 0.0;
+    int strongest = 0;
+    for (int i = 0; i < u_area_lights.count; ++i) {
+        AreaLight face = u_area_lights.faces[i];
+        from_face[i] = luminance(face.radiance) * face_irradiance(face, p_ws, normal);
+        total += from_face[i];
+        if (from_face[i] > from_face[strongest]) strongest = i;
+    }
+    if (total <= 0.0) return AreaSample(-1, vec3(0.0), 0.0, vec3(0.0));
+    AreaSample s;
+    if (from_face[strongest] > 0.999 * total) {
+        AreaLight part = part_of_face(u_area_lights.faces[strongest], stratum);
+        s.face = strongest;
+        s.point_ws = part.corner_ws + 0.5 * (part.edge_u_ws + part.edge_v_ws);
+        s.radius = sqrt(part.area_m2 * INVERSE_PI);
+        s.irradiance = part.radiance * (face_irradiance(part, p_ws, normal) * float(AREA_STRATA));
+        return s;
+    }
+    float left = (float(stratum) + 0.5) / float(AREA_STRATA) * total;
+    int chosen = 0;
+    while (chosen < u_area_lights.count - 1 && left > from_face[chosen]) left -= from_face[chosen++];
+    AreaLight face = u_area_lights.faces[chosen];
+    float along = clamp(left / from_face[chosen], 0.0, 1.0);
+    float across = (float((stratum * 5) % AREA_STRATA) + 0.5) / float(AREA_STRATA);
+    float parts = max(from_face[chosen] / total * float(AREA_STRATA), 1.0);
+    s.face = chosen;
+    s.point_ws = face.corner_ws + along * face.edge_u_ws + across * face.edge_v_ws;
+    s.radius = sqrt(face.area_m2 * INVERSE_PI / parts);
+    s.irradiance = face.radiance * (total / luminance(face.radiance));
+    return s;
+}
+
+// Light of all faces without shadow in a broad lobe around a direction, as the lobe's mean radiance. Each
+// face is taken at four points; the lobe is a Gaussian with the mean squared angle of the cone, widened
+// by the angle of what a point stands for, so that it stays normalized. Low light is shadowed after [Schlick94].
+vec3 area_lobe_radiance(vec3 p_ws, vec3 normal, vec3 direction, float half_angle) {
+    vec3 sum = vec3(0.0);
+    float shadowing = half_angle * half_angle / 16.0;  // half of GGX's alpha: see specular_cone_half_angle
+    for (int i = 0; i < u_area_lights.count; ++i) {
+        AreaLight face = u_area_lights.faces[i];
+        vec3 front = cross(face.edge_u_ws, face.edge_v_ws) / face.area_m2;
+        float part_m2 = 0.25 * face.area_m2;
+        for (int k = 0; k < 4; ++k) {
+            vec2 at = vec2(k & 1, k >> 1) * 0.5 + 0.25;
+            vec3 path = face.corner_ws + at.x * face.edge_u_ws + at.y * face.edge_v_ws - p_ws;
+            float squared = dot(path, path);
+            vec3 to_light = path * inversesqrt(squared);
+            float facing = -dot(front, to_light);
+            if (face.both_sides != 0.0) facing = abs(facing);
+            float n_o_l = dot(normal, to_light);
+            if (min(facing, n_o_l) <= 0.0) continue;
+            float solid_angle = min(part_m2 * facing / squared, 2.0 * PI);
+            float variance = 0.25 * half_angle * half_angle + 0.25 * INVERSE_PI * solid_angle;
+            float off_axis = 2.0 * (1.0 - dot(to_light, direction));  // squared angle
+            float lit = n_o_l / mix(n_o_l, 1.0, shadowing);
+            sum += face.radiance * (lit * solid_angle * exp(-0.5 * off_axis / variance) / (2.0 * PI * variance));
+        }
+    }
+    return sum;
+}
+
+// The nearest face that a cone meets.
+struct AreaHit {
+    float distance_m;
+    float share;        // of the cone's width that the face covers
+    vec3 radiance;
+};
+
+// Share of the interval x +- reach that lies in 0..1.
+float covered_share(float x, float reach) {
+    return max(min(x + reach, 1.0) - max(x - reach, 0.0), 0.0) / (2.0 * reach);
+}
+
+AreaHit hit_area_lights(vec3 origin, vec3 direction, float half_angle) {
+    AreaHit hit = AreaHit(0.0, 0.0, vec3(0.0));
+    for (int i = 0; i < u_area_lights.count; ++i) {
+        AreaLight face = u_area_lights.faces[i];
+        vec3 front = cross(face.edge_u_ws, face.edge_v_ws) / face.area_m2;
+        float approach = -dot(front, direction);
+        if (abs(approach) < 1e-4 || (approach < 0.0 && face.both_sides == 0.0)) continue;
+        float t = dot(origin - face.corner_ws, front) / approach;
+        if (t <= 0.0 || (hit.share > 0.0 && t > hit.distance_m)) continue;
+        vec3 at = origin + t * direction - face.corner_ws;
+        vec2 place = vec2(dot(cross(at, face.edge_v_ws), front), dot(cross(face.edge_u_ws, at), front)) / face.area_m2;
+        float reach = max(t * tan(half_angle), 1e-6);
+        vec2 lengths = vec2(length(face.edge_u_ws), length(face.edge_v_ws));
+        float share = covered_share(place.x, reach / lengths.x) * covered_share(place.y, reach / lengths.y);
+        if (share > 0.0) hit = AreaHit(t, share, face.radiance);
+    }
+    return hit;
+}

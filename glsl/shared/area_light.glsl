@@ -1,0 +1,18 @@
+// Emissive parallelograms: points are corner + s edge_u + t edge_v with s, t in 0..1.
+const int AREA_LIGHTS_MAX = 16;
+
+struct AreaLight {
+    vec3 corner_ws;
+    float both_sides;   // 1: the back emits too
+    vec3 edge_u_ws;     // m; cross(edge_u, edge_v) points to the front
+    float area_m2;
+    vec3 edge_v_ws;
+    float reserved0;
+    vec3 radiance;      // W/(m^2 sr)
+    float reserved1;
+};
+
+layout(std140) uniform AreaLights {
+    int count;
+    AreaLight faces[AREA_LIGHTS_MAX];
+} u_area_lights;
