@@ -1,0 +1,157 @@
+"""Light from parallelograms against closed forms and sums. GI-15"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from elemental.gpu.device import Device
+from elemental.passes.area_lights import pack_area_lights
+from elemental.scene.area_lights import AreaLight
+from glsl.harness import run_glsl
+
+Array = npt.NDArray[Any]
+LIB = ["lib/area_light.glsl"]
+UP = np.array([0.0, 1.0, 0.0])
+
+
+def face(
+    corner: tuple[float, float, float],
+    u: tuple[float, float, float],
+    v: tuple[float, float, float],
+    radiance: float = 1.0,
+    both_sides: bool = False,
+) -> AreaLight:
+    f4 = [np.array(x, np.float32) for x in (corner, u, v)]
+    return AreaLight(0, *f4, np.full(3, radiance, np.float32), both_sides)
+
+
+def lamp(height: float, side: float, **fields: Any) -> AreaLight:
+    """A square over the origin that shines down."""
+    h = side / 2
+    return face((-h, height, -h), (side, 0, 0), (0, 0, side), **fields)
+
+
+def irradiance(device: Device, lights: list[AreaLight], p: Array, normal: Array) -> Array:
+    p, normal = np.broadcast_arrays(np.atleast_2d(p), np.atleast_2d(normal))
+    inputs = {"p": p.astype(np.float32), "n": normal.astype(np.float32)}
+    params = {"AreaLights": pack_area_lights(lights)}
+    return run_glsl(device, LIB, "area_irradiance(p, n)", inputs, "vec3", params=params)[:, 0]
+
+
+def summed(light: AreaLight, p: Array, normal: Array, cells: int = 400) -> float:
+    """The same by a sum over small pieces."""
+    s = (np.arange(cells) + 0.5) / cells
+    u, v = (e.astype(float) for e in (light.edge_u, light.edge_v))
+    points = light.corner + s[:, None, None] * u + s[None, :, None] * v - p
+    front = np.cross(u, v)
+    squared = (points**2).sum(-1)
+    direction = points / np.sqrt(squared)[..., None]
+    facing = -direction @ front
+    facing = np.abs(facing) if light.both_sides else np.maximum(facing, 0.0)
+    return float((np.maximum(direction @ normal, 0.0) * facing / squared).sum() / cells**2)
+
+
+@pytest.mark.parametrize("height", [0.01, 0.1, 0.5, 1.0, 4.0])
+def test_under_the_middle_of_a_square(device: Device, height: float) -> None:
+    """Four times the corner's form factor [Howell, Catalog of Radiation Configuration Factors B-3],
+    times pi."""
+    a = 0.5 / height
+    root = np.sqrt(1.0 + a * a)
+    expected = np.pi * 4.0 / np.pi * a / root * np.arctan(a / root)
+    found = irradiance(device, [lamp(height, 1.0)], np.zeros(3), UP)
+    np.testing.assert_allclose(found, expected, rtol=1e-5)
+
+
+def test_any_point_and_normal_and_the_horizon(device: Device) -> None:
+    rng = np.random.default_rng(4)
+    p = rng.uniform(-1.5, 1.5, (60, 3))
+    normals = rng.normal(size=(60, 3))
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    skewed = face((-0.4, 0.3, -0.5), (0.9, 0.4, 0.1), (0.3, -0.2, 0.8))
+    for both in (False, True):
+        light = AreaLight(0, skewed.corner, skewed.edge_u, skewed.edge_v, skewed.radiance, both)
+        found = irradiance(device, [light], p, normals)
+        wanted = [summed(light, a, n) for a, n in zip(p, normals, strict=True)]
+        np.testing.assert_allclose(found, wanted, rtol=0.01, atol=0.003)
+    assert min(np.count_nonzero(found), np.count_nonzero(found == 0.0)) > 3
+
+
+def test_its_own_face_gets_nothing(device: Device) -> None:
+    p = np.array([[0.1, 1.0 + offset, 0.2] for offset in (-1e-4, 0.0, 1e-4)])
+    for normal in (UP, -UP):
+        assert irradiance(device, [lamp(1.0, 1.0, both_sides=True)], p, normal).max() == 0.0
+
+
+def test_the_back_is_dark_unless_both_sides_emit(device: Device) -> None:
+    above = np.array([0.0, 2.0, 0.0])
+    assert irradiance(device, [lamp(1.0, 1.0)], above, -UP) == 0.0
+    both = irradiance(device, [lamp(1.0, 1.0, both_sides=True)], above, -UP)
+    below = irradiance(device, [lamp(1.0, 1.0)], np.zeros(3), UP)
+    np.testing.assert_allclose(both, below, rtol=1e-5)
+
+
+STRATA = """
+vec4 stratum(vec3 p, vec3 n, int k) {
+    AreaSample s = sample_area_lights(p, n, k);
+    return vec4(s.point_ws, s.face < 0 ? -1.0 : s.irradiance.x);
+}
+"""
+
+
+@pytest.mark.parametrize("count", [1, 2, 5])
+def test_the_strata_share_the_irradiance(device: Device, count: int) -> None:
+    """Their mean is the whole, and each face is looked at as often as its share says."""
+    lights = [face((k, 1.0 + 0.2 * k, -0.5), (0.8, 0, 0), (0, 0, 1), 1.0 + k) for k in range(count)]
+    p = np.array([0.3, 0.0, 0.1])
+    inputs = {
+        "p": np.tile(p, (9, 1)).astype(np.float32),
+        "n": np.tile(UP, (9, 1)).astype(np.float32),
+        "k": np.arange(9, dtype=np.int32),
+    }
+    params = {"AreaLights": pack_area_lights(lights)}
+    found = run_glsl(
+        device, LIB, "stratum(p, n, k)", inputs, "vec4", functions=STRATA, params=params
+    )
+    whole = irradiance(device, lights, p, UP)[0]
+    np.testing.assert_allclose(found[:, 3].mean(), whole, rtol=1e-4)
+    alone = np.array([irradiance(device, [light], p, UP)[0] for light in lights])
+    looks = np.array([np.count_nonzero(found[:, 0] // 1 == k) for k in range(count)])
+    assert np.abs(looks - 9 * alone / whole).max() < 1.0
+
+
+LOBE = "area_lobe_radiance(p, n, d, a)"
+
+
+def test_a_panel_wider_than_the_lobe_is_seen_at_its_own_radiance(device: Device) -> None:
+    inputs = {
+        "p": np.zeros((1, 3), np.float32), "n": UP[None].astype(np.float32),
+        "d": UP[None].astype(np.float32), "a": np.full(1, 0.5, np.float32),
+    }  # fmt: skip
+    far = run_glsl(
+        device, LIB, LOBE, inputs, "vec3",
+        params={"AreaLights": pack_area_lights([lamp(10.0, 1.0, radiance=3.0)])},
+    )  # fmt: skip
+    # A small lamp on the axis: its solid angle by the lobe's effective one, 2 pi variance.
+    np.testing.assert_allclose(far[0, 0], 3.0 * 0.01 / (2 * np.pi * 0.0625), rtol=0.03)
+
+
+HIT = "vec4(hit_area_lights(p, d, a).distance_m, hit_area_lights(p, d, a).share, 0, 0)"
+
+
+def test_a_ray_meets_the_nearest_face_that_it_points_at(device: Device) -> None:
+    lights = [lamp(2.0, 1.0), lamp(1.0, 1.0)]
+    inputs = {
+        "p": np.array([[0, 0, 0], [0.5, 0, 0], [0.6, 0, 0], [0, 3, 0]], np.float32),
+        "d": np.array([UP, UP, UP, -UP], np.float32),
+        "a": np.full(4, 1e-4, np.float32),
+    }
+    params = {"AreaLights": pack_area_lights(lights)}
+    found = run_glsl(device, LIB, HIT, inputs, "vec4", params=params)
+    np.testing.assert_allclose(found[0, :2], [1.0, 1.0], rtol=1e-4)
+    np.testing.assert_allclose(found[1, 1], 0.5, atol=0.01)  # along its edge
+    assert found[2, 1] == 0.0  # beside it
+    assert found[3, 1] == 0.0  # from behind
