@@ -3,7 +3,6 @@
 
 #include "shared/octree.glsl"
 #include "shared/voxelize.glsl"
-#include "lib/dispatch.glsl"
 #include "lib/lattice.glsl"
 #include "lib/material.glsl"
 #include "lib/packing.glsl"
@@ -35,11 +34,7 @@ void main() {
     uvec3 point = uvec3(clamp(nearest, vec3(0.0), vec3(float(u_octree.resolution - 1))));
 
     uint index = atomicAdd(octree_state.fragment_count, 1u);
-    if (index >= u_octree.fragment_capacity) {
-        atomicAdd(octree_state.fragment_dropped, 1u);
-        return;
-    }
-    reach_item(octree_state.fragments.x, octree_state.fragments.y, index, FRAGMENT_GROUP);
+    if (index >= u_octree.fragment_capacity) return;  // dropped; counted in queue.comp
     VoxelFragment fragment;
     fragment.position = pack_position(point);
     fragment.albedo = packUnorm4x8(vec4(surface.albedo, opacity));

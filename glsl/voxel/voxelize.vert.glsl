@@ -1,7 +1,7 @@
 // One of three orthographic views along an axis, pixel centres on lattice points.
 // [Mittring12 "Voxel Lighting Pipeline": one rasterization pass per axis to avoid holes]
 
-#include "shared/octree.glsl"
+#include "lib/scene_lattice.glsl"
 #include "shared/voxelize.glsl"
 #include "shared/instance.glsl"
 
@@ -10,7 +10,9 @@ in vec3 a_normal;
 in vec2 a_uv0;
 in vec2 a_uv1;
 in vec4 a_color;
-in uint a_instance;
+in mat4 a_world_from_local;  // the Instance: a draw is of one, and attributes are read once for it
+in mat4 a_normal_from_local;
+in uvec4 a_instance_words;   // material, flags
 
 out vec3 v_point;      // in lattice points from the scene's corner
 out vec3 v_normal_ws;
@@ -21,16 +23,14 @@ flat out uint v_material;
 flat out float v_emission;  // 0: an area light, whose emission the voxels leave out
 
 void main() {
-    mat4 world_from_local = instances[a_instance].world_from_local;
-    vec3 p_ws = (world_from_local * vec4(a_position, 1.0)).xyz;
-    vec3 in_cube = (p_ws - u_octree.origin_size.xyz) / u_octree.voxel_m;
-    v_point = in_cube - 0.5 * float(u_octree.resolution);
-    v_normal_ws = mat3(instances[a_instance].normal_from_local) * a_normal;
+    vec3 p_ws = (a_world_from_local * vec4(a_position, 1.0)).xyz;
+    v_point = scene_point_from_world(p_ws);
+    v_normal_ws = mat3(a_normal_from_local) * a_normal;
     v_uv0 = a_uv0;
     v_uv1 = a_uv1;
     v_color = a_color;
-    v_material = instances[a_instance].material;
-    v_emission = (instances[a_instance].flags & INSTANCE_AREA_LIGHT) != 0u ? 0.0 : 1.0;
+    v_material = a_instance_words.x;
+    v_emission = (a_instance_words.y & INSTANCE_AREA_LIGHT) != 0u ? 0.0 : 1.0;
     // The axis becomes depth; (x, y, z) turns cyclically, so no view mirrors another.
     vec3 p = u_voxelize.axis == 0 ? v_point.yzx : u_voxelize.axis == 1 ? v_point.zxy : v_point;
     vec3 clip = vec3((p.xy + 0.5), p.z) / float(u_octree.resolution) * 2.0 - 1.0;

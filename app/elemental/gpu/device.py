@@ -19,6 +19,7 @@ from elemental.gpu.execute import Executor
 from elemental.gpu.formats import Format
 from elemental.gpu.graph import Graph
 from elemental.gpu.headless import adopt, create
+from elemental.gpu.heap import keep_freed_memory
 from elemental.gpu.library import ShaderLibrary
 from elemental.gpu.messages import GlError, Messages
 from elemental.gpu.params import ParamRing
@@ -63,6 +64,8 @@ class Device:
         renderer = str(info["GL_RENDERER"])
         software = any(word in renderer.lower() for word in ("llvmpipe", "softpipe", "swrast"))
         self.info = DeviceInfo(renderer, str(info["GL_VERSION"]), str(info["GL_VENDOR"]), software)
+        if software:
+            keep_freed_memory()
         self.storage_limit = self.gl.integer(c.MAX_SHADER_STORAGE_BLOCK_SIZE)
         self.max_anisotropy = float(ctx.max_anisotropy)
         self.scratch_unit = ctx.max_texture_units - 1

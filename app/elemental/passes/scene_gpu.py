@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,12 +22,15 @@ from elemental.passes.scene_pack import (
     Array,
     Batch,
 )
+from elemental.passes.triangle_lists import TriangleLists
 from elemental.scene.area_lights import AreaLight
 from elemental.scene.model import AlphaMode, Scene
 from elemental.scene.model import Texture as Image
 
 SRGB_SLOTS = frozenset({"base_color", "emissive"})
 SURFACE_NAMES = scene_pack.SURFACE_VERTEX.names or ()
+INSTANCE_NAMES = ("a_world_from_local", "a_normal_from_local", "a_instance_words")
+"""Members of struct Instance as attributes; the last holds its four words."""
 FLAT_NORMAL = bytes((128, 128, 255, 255))
 WHITE = bytes((255, 255, 255, 255))
 ANISOTROPY = 4.0
@@ -39,8 +42,8 @@ class GpuScene:
     """A scene's geometry, uploaded once: merged vertex and index buffers drawn indirectly.
 
     `instances` and `materials` are the storage blocks of glsl/shared. `version` counts the changes
-    of geometry that cached shadow maps follow. `bounds` is the scene's (min, max) in m. What
-    `area_lights` emit is left out of the voxels.
+    of geometry that cached shadow maps follow. `bounds` is the scene's (min, max) in m. `lists` is
+    what voxelization draws; what `area_lights` emit is left out of the voxels.
     """
 
     def __init__(self, device: Device, scene: Scene, area_lights: Sequence[AreaLight] = ()) -> None:
@@ -57,8 +60,9 @@ class GpuScene:
 
         self.instances = upload("instances", scene_pack.pack_instances(scene, area_lights))
         self.materials = upload("materials", scene_pack.pack_materials(scene))
-        indices = upload("indices", geometry.indices)
-        position = (upload("positions", geometry.positions), "3f", ("a_position",))
+        self.indices = indices = upload("indices", geometry.indices)
+        self.positions = upload("positions", geometry.positions)
+        position = (self.positions, "3f", ("a_position",))
         surface = (upload("surface", geometry.surface), "3f 4f 2f 2f 4f1", SURFACE_NAMES)
 
         def place(name: str) -> Placed:
@@ -74,6 +78,9 @@ class GpuScene:
         self._place = place
         self._everything = place("everything")
         self._seen_by: dict[str, Placed] = {}
+        self.lists = TriangleLists(device, commands, numbers, indices)
+        placement = (self.instances, "16f 16f 4u/i", INSTANCE_NAMES)
+        self._listed = device.vertex_input([position, surface, placement], self.lists.indices)
         self._culling = Culling(commands, numbers, *scene_pack.instance_boxes(scene))
         self._textures = MaterialTextures(device, scene, self._batches)
 
@@ -82,6 +89,8 @@ class GpuScene:
         for placed in (self._everything, *self._seen_by.values()):
             placed.vertices.release()
             placed.positions_only.release()
+        self._listed.release()
+        self.lists.release()
         self._textures.release()
         for buffer in self._buffers:
             buffer.release()
@@ -134,15 +143,35 @@ class GpuScene:
         materials; without it the pass's state stays. `seen_by`: a viewer given to `look`.
         """
         placed = self._placed(seen_by)
-        bound: dict[str, int] = {}
-        for batch in batches:
+        for batch in self._bind_textures(encoder, batches, texture_mask):
             if cull:
                 encoder.set(cull="none" if batch.double_sided else "back")
+            encoder.draw_indirect(placed.vertices, placed.commands, batch.count, batch.first)
+
+    def draw_listed(
+        self, encoder: Encoder, batches: Iterable[Batch], view: int, *, texture_mask: int
+    ) -> None:
+        """Draw what `lists` holds of the batches for a view, culling left as it is.
+
+        The instance comes as the attributes INSTANCE_NAMES. The pass names the lists' commands and
+        indices in ``uses``.
+        """
+        for batch in self._bind_textures(encoder, batches, texture_mask):
+            instances = self._culling.instances_of(batch)
+            first = self.lists.first_command(view) + instances.start
+            encoder.draw_indirect(self._listed, self.lists.commands, len(instances), first)
+
+    def _bind_textures(
+        self, encoder: Encoder, batches: Iterable[Batch], texture_mask: int
+    ) -> Iterator[Batch]:
+        """Each batch, once its textures are bound."""
+        bound: dict[str, int] = {}
+        for batch in batches:
             for index, (slot, texture) in enumerate(zip(SLOTS, batch.textures, strict=True)):
                 if texture_mask >> index & 1 and bound.get(slot) != texture:
                     encoder.bind(f"u_{slot}_texture", self._textures.sampled(slot, texture))
                     bound[slot] = texture
-            encoder.draw_indirect(placed.vertices, placed.commands, batch.count, batch.first)
+            yield batch
 
     def draw_positions(
         self,
@@ -194,6 +223,12 @@ class Culling:
         commands = self._commands.copy()
         commands["instance_count"] = np.add.reduceat(seen, commands["base_instance"], dtype="<u4")
         return commands, self._order[np.lexsort((~seen, self._segment))]
+
+    def instances_of(self, batch: Batch) -> range:
+        """Where the batch's instances stand in draw order."""
+        drawn = self._commands[batch.first : batch.first + batch.count]
+        first = int(drawn["base_instance"][0])
+        return range(first, first + int(drawn["instance_count"].sum()))
 
     def visible(self, clip_from_world: Array) -> Array:
         """(N,) bool: instances whose box is not wholly outside one of the frustum's planes."""

@@ -7,19 +7,50 @@ from elemental.core.layout import layouts, pack
 from elemental.gpu.encode import Encoder
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import BufferHandle
-from elemental.gpu.shaders import Raster
+from elemental.gpu.shaders import Compute, Raster
 from elemental.gpu.state import RasterState
 from elemental.passes.scene_gpu import GpuScene
-from elemental.passes.scene_pack import ALL_SLOTS, Batch
+from elemental.passes.scene_pack import BASE_COLOR_SLOT, SLOTS, Batch, slot_mask
 from elemental.passes.voxel.octree import Survey
 from elemental.scene.model import AlphaMode
 
 VERT, FRAG = "voxel/voxelize.vert.glsl", "voxel/voxelize.frag.glsl"
+SELECT = Compute("voxel/select_triangles.comp.glsl")
+QUEUE = Compute("voxel/queue.comp.glsl")
+COLOR_SLOTS = slot_mask(slot in ("base_color", "metallic_roughness", "emissive") for slot in SLOTS)
+"""Textures that voxels are made of: they keep no roughness, and normals of their own."""
 VARIANTS = {
-    mask: Raster(VERT, FRAG, defines={"MATERIAL_TEXTURES": mask}) for mask in (0, ALL_SLOTS)
+    mask: Raster(VERT, FRAG, defines={"MATERIAL_TEXTURES": mask})
+    for mask in (0, BASE_COLOR_SLOT, COLOR_SLOTS)
 }
 BOTH_SIDES = RasterState(cull="none", depth_test="none", depth_write=False)
 ALPHA_MODES: tuple[AlphaMode, ...] = ("opaque", "mask", "blend")
+
+
+def select_triangles(g: Graph, scene: GpuScene, octree: Survey) -> None:
+    """Fill the scene's lists with the triangles that may cover a lattice line, for each axis."""
+    lists = scene.lists
+    if not lists.selects:
+        return
+    g.copy_buffer(lists.empty, lists.commands)
+    g.compute(
+        SELECT,
+        "voxelize.select",
+        reads={
+            "Chunks": lists.chunks,
+            "Indices": scene.indices,
+            "Positions": scene.positions,
+            "Instances": scene.instances,
+        },
+        writes={"Commands": lists.commands, "Lists": lists.indices},
+        params=octree.params,
+        threads=lists.chunk_count * int(layouts().constant("TRIANGLE_GROUP")),
+    )
+
+
+def variant_of(batch: Batch) -> int:
+    """MATERIAL_TEXTURES of the variant that a batch is drawn with."""
+    return next(mask for mask in VARIANTS if not batch.texture_mask & COLOR_SLOTS & ~mask)
 
 
 def voxelize(g: Graph, scene: GpuScene, octree: Survey) -> BufferHandle:
@@ -29,26 +60,33 @@ def voxelize(g: Graph, scene: GpuScene, octree: Survey) -> BufferHandle:
     face-connected empty voxels crosses it. What the queue can't hold is counted, not written.
     """
     g.copy_buffer(octree.empty_state, octree.state)
+    select_triangles(g, scene, octree)
     nbytes = octree.capacity.fragments * layouts().struct("VoxelFragment").itemsize
     fragments = g.buffer("voxel.fragments", nbytes)
     side = octree.grid.resolution
     for mask, shader in VARIANTS.items():
-        batches = scene.batches(ALPHA_MODES, textured=mask != 0)
+        batches = [b for b in scene.batches(ALPHA_MODES) if variant_of(b) == mask]
         if not batches:
             continue
-
-        def draw(encoder: Encoder, batches: list[Batch] = batches, mask: int = mask) -> None:
-            scene.draw(encoder, batches, texture_mask=mask, cull=False)
-
         for axis, name in enumerate("xyz"):
+
+            def draw(
+                encoder: Encoder, axis: int = axis, batches: list[Batch] = batches, mask: int = mask
+            ) -> None:
+                scene.draw_listed(encoder, batches, axis, texture_mask=mask)
+
             g.raster(
                 shader,
-                f"voxelize.{name}{'.textured' if mask else ''}",
+                f"voxelize.{name}.textures{mask}",
                 size=(side, side),
                 state=BOTH_SIDES,
                 reads={"Instances": scene.instances, "Materials": scene.materials},
                 writes={"State": octree.state, "Fragments": fragments},
                 params={**octree.params, "Voxelize": pack(layouts().block("Voxelize"), axis=axis)},
                 draw=draw,
+                uses=(scene.lists.commands, scene.lists.indices),
             )
+    g.compute(
+        QUEUE, "voxelize.queue", writes={"State": octree.state}, params=octree.params, groups=1
+    )
     return fragments

@@ -1,0 +1,21 @@
+// The triangles that voxelization has to draw: see voxel/select_triangles.comp.
+
+const uint TRIANGLE_GROUP = 64u;  // triangles of a chunk at most, threads a group over chunks
+
+// Triangles in a row of one placed mesh.
+struct TriangleChunk {
+    uint first_index;  // in the scene's indices
+    uint triangles;
+    uint base_vertex;
+    uint instance;
+    uint draw;         // whose list takes them: a draw for each instance
+};
+
+// DrawElementsIndirectCommand (OpenGL 4.3 core, section 10.3.10).
+struct DrawCommand {
+    uint count;
+    uint instance_count;
+    uint first_index;
+    uint base_vertex;
+    uint base_instance;
+};
