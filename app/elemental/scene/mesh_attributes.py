@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from elemental.scene.model import ByteArray, FloatArray, IndexArray, Mesh
+from elemental.scene.motion import Influences, Morphs
 from elemental.scene.tangents import any_tangents, mikktspace_tangents
 
 DEGENERATE_SINE = 1e-8
@@ -30,6 +31,8 @@ class Primitive:
     uv0: FloatArray | None = None
     uv1: FloatArray | None = None
     colors: ByteArray | None = None
+    influences: Influences | None = None
+    morphs: Morphs | None = None
 
 
 VERTEX_ARRAYS = ("positions", "normals", "tangents", "uv0", "uv1", "colors")
@@ -87,6 +90,8 @@ def complete(primitive: Primitive, name: str, material: int, tangent_uv_set: int
         colors=np.full((count, 4), 255, np.uint8) if colors is None else colors,
         indices=indices,
         material=material,
+        influences=primitive.influences,
+        morphs=primitive.morphs,
     )
     if primitive.tangents is not None:
         mesh.tangents = _repaired_tangents(primitive.tangents, normals)
@@ -114,16 +119,33 @@ def _corners(primitive: Primitive) -> npt.NDArray[np.float64]:
 def _take(primitive: Primitive, vertices: npt.NDArray[Any]) -> Primitive:
     arrays = {name: getattr(primitive, name) for name in VERTEX_ARRAYS}
     taken = {name: array[vertices] for name, array in arrays.items() if array is not None}
+    if primitive.influences is not None:
+        taken["influences"] = primitive.influences.take(vertices)
+    if primitive.morphs is not None:
+        taken["morphs"] = primitive.morphs.take(vertices)
     return replace(primitive, **taken)
 
 
 def _with_flat_normals(primitive: Primitive) -> Primitive:
-    split = _take(primitive, primitive.indices)
-    a, b, c = _corners(primitive)
-    normals = np.repeat(_unit(np.cross(b - a, c - a)), 3, axis=0)
     indices = np.arange(len(primitive.indices), dtype=np.uint32)
+    split = replace(_take(primitive, primitive.indices), indices=indices)
+    normals = _flat_normals(split)
+    if split.morphs is not None:
+        # Exact where one target has all the weight: the flat normals of what it makes.
+        bent = [replace(split, positions=split.positions + d) for d in split.morphs.positions]
+        deltas = np.stack([_flat_normals(shape) - normals for shape in bent])
+        split.morphs = replace(split.morphs, normals=deltas)
     # Tangents without normals are to be ignored [glTF 2.0, 3.7.2.1].
-    return replace(split, indices=indices, normals=normals.astype(np.float32), tangents=None)
+    return replace(split, normals=normals, tangents=None)
+
+
+def _flat_normals(primitive: Primitive) -> FloatArray:
+    """(N, 3) float32 of a primitive whose triangles share no vertex; any unit vector where one has
+    no area."""
+    a, b, c = _corners(primitive)
+    normals = _unit(np.cross(b - a, c - a))
+    normals[~normals.any(axis=1)] = (0.0, 1.0, 0.0)
+    return np.repeat(normals, 3, axis=0).astype(np.float32)
 
 
 def _repaired_normals(primitive: Primitive, normals: FloatArray) -> FloatArray:

@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from elemental.core import transforms
+from elemental.scene.motion import Influences, Morphs, Motion
 
 FloatArray: TypeAlias = npt.NDArray[np.float32]
 ByteArray: TypeAlias = npt.NDArray[np.uint8]
@@ -89,7 +90,7 @@ class Mesh:
     positions (N, 3) float32; normals (N, 3) float32 unit; tangents (N, 4) float32, xyz unit,
     w = ±1 with bitangent = w · cross(normal, tangent); uv0, uv1 (N, 2) float32; colors (N, 4)
     uint8 linear; indices (3T,) uint32; `material` indexes `Scene.materials`. Front faces wind
-    counter-clockwise.
+    counter-clockwise. `influences` and `morphs` are those of meshes that bend as they move.
     """
 
     name: str
@@ -101,6 +102,8 @@ class Mesh:
     colors: ByteArray
     indices: IndexArray
     material: int
+    influences: Influences | None = None
+    morphs: Morphs | None = None
 
     @property
     def triangle_count(self) -> int:
@@ -113,11 +116,19 @@ class Instance:
 
     The loaders give a mirroring instance (negative determinant) a mesh of its own with reversed
     winding and tangent w, so that front faces are counter-clockwise after the transform, always.
+
+    `dynamic`: a pose may place, bend or hide it; `node` of `Scene.motion`'s rig places it (-1:
+    nothing does). With a `skin` of the motion its joints place its vertices in the world by
+    themselves. `weights` (T,) float32 are its morph targets' at rest.
     """
 
     name: str
     mesh: int
     world_from_local: FloatArray
+    dynamic: bool = False
+    node: int = -1
+    skin: int = -1
+    weights: FloatArray | None = None
 
 
 @dataclass
@@ -126,7 +137,7 @@ class Light:
 
     `intensity` is lux for a directional light, candela for the others; `position` and `direction`
     are (3,) float32, the direction a unit vector pointing away from the light; `range` in m; cone
-    half angles in radians; `source_radius` in m.
+    half angles in radians; `source_radius` in m. A `node` of `Scene.motion`'s rig moves it.
     """
 
     name: str
@@ -140,13 +151,15 @@ class Light:
     outer_angle: float = math.pi / 4
     source_radius: float = 0.0
     casts_shadow: bool = True
+    node: int = -1
 
 
 @dataclass
 class Camera:
     """A perspective camera looking down its -z: `fov_y` in radians, `near` and `far` in m.
 
-    `far` None: as far as the scene reaches; `aspect` None: the image's own.
+    `far` None: as far as the scene reaches; `aspect` None: the image's own. A `node` of
+    `Scene.motion`'s rig moves it.
     """
 
     name: str
@@ -155,6 +168,7 @@ class Camera:
     near: float
     far: float | None = None
     aspect: float | None = None
+    node: int = -1
 
 
 @dataclass
@@ -193,7 +207,11 @@ class Region:
 
 @dataclass
 class Scene:
-    """Everything that a frame needs to know of a file."""
+    """Everything that a frame needs to know of a file.
+
+    What moves stands as at time 0; `extent` (min, max) is the box that holds it at all times, None
+    where nothing moves. `animations` are the names of those that the files hold.
+    """
 
     name: str
     path: Path
@@ -210,6 +228,9 @@ class Scene:
     notes: list[str] = field(default_factory=list)
     camera_path: CameraPath | None = None
     regions: list[Region] = field(default_factory=list)
+    motion: Motion | None = None
+    extent: tuple[FloatArray, FloatArray] | None = None
+    animations: list[str] = field(default_factory=list)
 
     @property
     def triangle_count(self) -> int:
@@ -219,9 +240,12 @@ class Scene:
     def bounds(self) -> tuple[FloatArray, FloatArray]:
         """World-space (min, max), each (3,) float32, over every instance's triangles.
 
-        Raises ValueError if the scene has no instance; the loaders never return such a scene.
+        What moves counts with its whole way. Raises ValueError if the scene has no instance; the
+        loaders never return such a scene.
         """
-        corners = [self._instance_bounds(instance) for instance in self.instances]
+        if self.extent is not None:
+            return self.extent
+        corners = [self.instance_bounds(instance) for instance in self.instances]
         if not corners:
             raise ValueError("a scene without instances has no bounds")
         lows, highs = zip(*corners, strict=True)
@@ -231,7 +255,8 @@ class Scene:
         """The file's first camera, else one that frames the scene at width/height `aspect`."""
         return self.cameras[0] if self.cameras else framing_camera(*self.bounds(), aspect)
 
-    def _instance_bounds(self, instance: Instance) -> tuple[FloatArray, FloatArray]:
+    def instance_bounds(self, instance: Instance) -> tuple[FloatArray, FloatArray]:
+        """World-space (min, max) of a rigid instance where it stands."""
         mesh = self.meshes[instance.mesh]
         points = transforms.transform_points(instance.world_from_local, mesh.positions)
         return points.min(axis=0), points.max(axis=0)

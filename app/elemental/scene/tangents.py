@@ -110,6 +110,8 @@ def _split_mirrored(
         uv1=mesh.uv1[order],
         colors=mesh.colors[order],
         indices=corner_vertex.astype(np.uint32),
+        influences=None if mesh.influences is None else mesh.influences.take(order),
+        morphs=None if mesh.morphs is None else mesh.morphs.take(order),
     )
     return split, uv[order], corner_vertex, corner_side
 

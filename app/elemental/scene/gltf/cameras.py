@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from elemental.scene.gltf.fields import Field
 from elemental.scene.model import Camera, FloatArray
+from elemental.scene.placement import rigid
 
 NARROWEST_FOV = math.radians(0.01)
 WIDEST_FOV = math.radians(179.0)
@@ -33,23 +32,9 @@ def place_camera(field: Field, name: str, world_from_local: FloatArray) -> Camer
         raise lens.need("aspectRatio").error("expected a number greater than 0")
     return Camera(
         name=name,
-        world_from_view=_rigid(world_from_local),
+        world_from_view=rigid(world_from_local),
         fov_y=lens.need("yfov").number(NARROWEST_FOV, WIDEST_FOV),
         near=near,
         far=far,
         aspect=aspect,
     )
-
-
-def _rigid(world_from_local: FloatArray) -> FloatArray:
-    """The transform without scale, mirroring or shear; -z keeps its direction, y its half plane."""
-    z, y = world_from_local[:3, 2].astype(np.float64), world_from_local[:3, 1].astype(np.float64)
-    x = np.cross(y, z)
-    if not (np.linalg.norm(x) > 0.0 and np.isfinite(x).all()):
-        x, z = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
-    x /= np.linalg.norm(x)
-    z /= np.linalg.norm(z)
-    rigid = np.eye(4, dtype=np.float32)
-    rigid[:3, :3] = np.stack([x, np.cross(z, x), z], axis=1)
-    rigid[:3, 3] = world_from_local[:3, 3]
-    return rigid

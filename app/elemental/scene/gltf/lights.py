@@ -8,6 +8,7 @@ import numpy as np
 
 from elemental.scene.gltf.fields import Field
 from elemental.scene.model import FloatArray, Light, LightKind
+from elemental.scene.placement import forward
 
 EXTENSION = "KHR_lights_punctual"
 KINDS: dict[str, LightKind] = {"directional": "directional", "point": "point", "spot": "spot"}
@@ -33,7 +34,7 @@ def place_light(field: Field, name: str, world_from_local: FloatArray) -> Light:
         color=color.numbers(3, 0.0) if color else np.ones(3, np.float32),
         intensity=field.number_or("intensity", 1.0, 0.0),
         position=world_from_local[:3, 3].copy(),
-        direction=_direction(world_from_local),
+        direction=forward(world_from_local),
         range=reach or math.inf,  # some exporters write 0 for "no limit"
         inner_angle=inner,
         outer_angle=outer,
@@ -52,11 +53,3 @@ def _cone(spot: Field) -> tuple[float, float]:
     if inner >= outer:
         spot.warn("innerConeAngle is not below outerConeAngle and is lowered to it")
     return min(inner, outer), outer
-
-
-def _direction(world_from_local: FloatArray) -> FloatArray:
-    """-z of the node in the world, (3,) float32 unit."""
-    axis = -world_from_local[:3, 2].astype(np.float64)
-    length = float(np.linalg.norm(axis))
-    unit = axis / length if length > 0.0 else np.array([0.0, 0.0, -1.0])
-    return unit.astype(np.float32)
