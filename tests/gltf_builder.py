@@ -20,7 +20,7 @@ Array = npt.NDArray[Any]
 Json = dict[str, Any]
 
 COMPONENT_CODE = {"i1": 5120, "u1": 5121, "i2": 5122, "u2": 5123, "u4": 5125, "f4": 5126}
-TYPE_NAME = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
+TYPE_NAME = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 ATTRIBUTE_NAME = {
     "positions": "POSITION",
     "normals": "NORMAL",
@@ -169,6 +169,47 @@ class GltfBuilder:
         lens = {"yfov": fov_y, "znear": near}
         camera = self.append("cameras", {"type": "perspective", "perspective": lens})
         return self.node(camera=camera, **node)
+
+    def animation(self, *channels: tuple[int, str, Any, Any], **more: Any) -> int:
+        """An animation of (node, path, times, values) channels; `more` is its JSON and may hold
+        interpolation="CUBICSPLINE" or "STEP" for all of them."""
+        interpolation = more.pop("interpolation", "LINEAR")
+        samplers, targets = [], []
+        for number, (node, path, times, values) in enumerate(channels):
+            samplers.append({
+                "input": self.accessor(np.asarray(times, np.float32)),
+                "output": self.accessor(np.asarray(values, np.float32)),
+                "interpolation": interpolation,
+            })  # fmt: skip
+            targets.append({"sampler": number, "target": {"node": node, "path": path}})
+        animation = {"samplers": samplers, "channels": targets, **more}
+        return self.append("animations", animation)
+
+    def skin(self, joints: list[int], inverse_bind: Array | None = None, **more: Any) -> int:
+        """A skin; inverse_bind (J, 4, 4) with p' = m @ p."""
+        skin: Json = {"joints": joints, **more}
+        if inverse_bind is not None:
+            columns = np.asarray(inverse_bind, np.float32).transpose(0, 2, 1).reshape(-1, 16)
+            skin["inverseBindMatrices"] = self.accessor(columns)
+        return self.append("skins", skin)
+
+    def skinned(self, primitive: Json, joints: Array, weights: Array, number: int = 0) -> Json:
+        """The primitive with JOINTS_n and WEIGHTS_n, (N, 4) each."""
+        attributes = primitive["attributes"]
+        attributes[f"JOINTS_{number}"] = self.accessor(np.asarray(joints, np.uint8))
+        attributes[f"WEIGHTS_{number}"] = self.accessor(np.asarray(weights, np.float32))
+        return primitive
+
+    def morphed(self, primitive: Json, *targets: dict[str, Array]) -> Json:
+        """The primitive with morph targets by attribute name (`ATTRIBUTE_NAME`)."""
+        primitive["targets"] = [
+            {
+                ATTRIBUTE_NAME[name]: self.accessor(np.asarray(a, np.float32))
+                for name, a in t.items()
+            }
+            for t in targets
+        ]
+        return primitive
 
     # Files
 

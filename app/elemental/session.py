@@ -32,6 +32,8 @@ from elemental.scene.model import Camera, CameraPath, Environment, Scene, framin
 from elemental.settings import Settings
 
 DEFAULT_SCENE = "atrium"
+ANIMATION = "scene.animation"
+"""The one setting that a scene is read by."""
 NAMES_TOLD = 24
 """How many names a refusal lists: every view, and the cameras of most scenes."""
 
@@ -58,8 +60,13 @@ class Stage:
 def open_scene(name: str | None, assignments: Iterable[str]) -> tuple[Scene, Settings]:
     """The scene and its settings: defaults, under the scene file's, under ``key=value`` texts."""
     texts = tuple(assignments)
-    Settings.parse(texts)  # refuse bad words before a large file is read
-    scene = load_scene(DEFAULT_SCENE if name is None else name, default_lights=False)
+    asked = Settings.parse(texts)  # refuse bad words before a large file is read
+    is_asked = any(text.partition("=")[0].strip() == ANIMATION for text in texts)
+    scene = load_scene(
+        DEFAULT_SCENE if name is None else name,
+        default_lights=False,
+        animation=asked[ANIMATION] if is_asked else None,
+    )
     exposure = fixed_exposure_ev(scene) if scene.exposure_ev is None else scene.exposure_ev
     own = Settings().replace({"exposure": exposure, **scene.settings}, str(scene.path))
     settings = Settings.parse(texts, own)

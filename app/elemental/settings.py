@@ -154,6 +154,11 @@ _TABLE = (
         "scene.default_lights", "bool", True,
         "a default sun and sky for a scene without any light or emission",
     ),
+    Setting(
+        "scene.animation", "text", "all",
+        "which of the scene's animations plays: its name, all or none",
+        unit="name",
+    ),
     Setting("sky.enabled", "bool", True, "draw the environment and light the scene by it"),
     Setting("sky.intensity", "float", 1.0, "factor on the environment's radiance", lo=0, hi=1000),
     Setting(

@@ -23,6 +23,7 @@ from elemental.session import (
     open_scene,
     set_stage,
 )
+from gltf_builder import GltfBuilder
 
 
 @pytest.fixture
@@ -172,3 +173,19 @@ def test_frame_numbers_in_names(pattern: str, frame: int, name: str) -> None:
 def test_a_frame_number_of_a_hundred_digits_is_refused(pattern: str) -> None:
     with pytest.raises(InputError, match="wider than 99 digits"):
         frame_file(Path(pattern), 0)
+
+
+def test_the_command_line_chooses_the_animation_over_the_scene_file(tmp_path: Path) -> None:
+    builder = GltfBuilder()
+    node = builder.add(np.eye(3, dtype=np.float32))
+    builder.animation((node, "translation", [0, 1], np.eye(3)[:2]), name="slide")
+    builder.write(tmp_path / "slide.glb")
+    path = tmp_path / "still.toml"
+    path.write_text('models = [{ file = "slide.glb" }]\n[settings]\nscene.animation = "none"\n')
+    for words, moves in (([], False), (["scene.animation=all"], True),
+                         (["scene.animation=slide"], True)):  # fmt: skip
+        scene, settings = open_scene(str(path), words)
+        assert (scene.motion is not None) is moves
+        assert settings["scene.animation"] == ("none" if not words else words[0].partition("=")[2])
+    with pytest.raises(InputError, match="no animation is named 'run'; known: slide"):
+        open_scene(str(path), ["scene.animation=run"])

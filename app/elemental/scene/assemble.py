@@ -13,12 +13,12 @@ from elemental.core import transforms
 from elemental.core.errors import InputError
 from elemental.core.images import read_environment
 from elemental.scene.gltf import load_gltf
+from elemental.scene.gltf.animations import EVERY
 from elemental.scene.model import (
     Camera,
     CameraPath,
     Environment,
     FloatArray,
-    Instance,
     Light,
     Material,
     Mesh,
@@ -27,6 +27,7 @@ from elemental.scene.model import (
     TextureSlot,
     unique_name,
 )
+from elemental.scene.motion import RigBuilder
 from elemental.scene.scene_file import (
     CameraTable,
     EnvironmentTable,
@@ -37,6 +38,7 @@ from elemental.scene.scene_file import (
     flat_settings,
     read_scene_file,
 )
+from elemental.scene.scene_motions import Movers
 
 TEXTURE_SLOTS = (
     "base_color_texture",
@@ -47,16 +49,28 @@ TEXTURE_SLOTS = (
 )
 
 
-def load_scene_file(path: Path) -> Scene:
-    """Read a scene file and everything that it names. Raises InputError."""
+def load_scene_file(path: Path, animation: str | None = None) -> Scene:
+    """Read a scene file and everything that it names. Raises InputError.
+
+    `animation`: which of the models' animations play, by name or "all"; with "none" the file's own
+    motions stand still too. None: as the file's settings say.
+    """
     file = read_scene_file(path)
     scene = Scene(file.name or path.stem, path)
+    scene.settings = flat_settings(file.settings)
+    wanted = animation or str(scene.settings.get("scene.animation", EVERY))
+    builder = RigBuilder()
+    movers = Movers(builder, () if wanted == "none" else file.motions, path)
     scene.cameras = [_camera(table) for table in file.cameras]
     scene.lights = [_light(table, i) for i, table in enumerate(file.lights)]
-    _place_models(scene, file)
+    for light in scene.lights:
+        node = movers.node_at("light", light.name, light.position)
+        light.node = builder.node(node, _light_turn(light)) if node >= 0 else -1
+    _place_models(scene, file, wanted, builder, movers)
+    movers.check()
+    scene.motion = builder.motion()
     scene.environment = _environment(file.environment, path) if file.environment else None
     scene.exposure_ev = file.exposure_ev
-    scene.settings = flat_settings(file.settings)
     scene.camera_path = _camera_path(file.camera_path) if file.camera_path else None
     scene.regions = [
         Region(_vec(region.min), _vec(region.max), region.level_offset) for region in file.regions
@@ -64,7 +78,9 @@ def load_scene_file(path: Path) -> Scene:
     return scene
 
 
-def _place_models(scene: Scene, file: SceneFile) -> None:
+def _place_models(
+    scene: Scene, file: SceneFile, animation: str, builder: RigBuilder, movers: Movers
+) -> None:
     """Load each named file once; a second placement shares its meshes."""
     loaded: dict[Path, tuple[Scene, int]] = {}
     for i, table in enumerate(file.models):
@@ -72,17 +88,56 @@ def _place_models(scene: Scene, file: SceneFile) -> None:
         if not path.is_file():
             raise InputError(scene.path, f"models[{i}].file", f"{table.file} does not exist")
         if path not in loaded:
-            loaded[path] = load_gltf(path), len(scene.meshes)
+            loaded[path] = load_gltf(path, animation), len(scene.meshes)
             _adopt(scene, loaded[path][0])
-        model, first_mesh = loaded[path]
         world_from_model = _placement(table)
-        scene.instances += [
-            Instance(item.name, first_mesh + item.mesh, world_from_model @ item.world_from_local)
-            for item in model.instances
-        ]
-        scene.lights += [_moved_light(light, world_from_model) for light in model.lights]
+        mover = movers.node_at("model", table.name or path.stem, world_from_model[:3, 3])
+        Placement(builder, world_from_model, mover).place(*loaded[path], scene)
+
+
+class Placement:
+    """One placing of a model: at a (4, 4) transform, moved by a node of the rig or by none (-1)."""
+
+    def __init__(self, builder: RigBuilder, world_from_model: FloatArray, mover: int) -> None:
+        self._builder, self._mover = builder, mover
+        self._world_from_model = world_from_model
+        self._mover_from_model = world_from_model.astype(np.float64)
+        if mover >= 0:
+            self._mover_from_model[:3, 3] = 0.0
+
+    def place(self, model: Scene, first_mesh: int, scene: Scene) -> None:
+        """Append the model's instances, lights and cameras to the scene."""
+        first_node = first_skin = 0
+        if model.motion is not None:
+            first_node, first_skin = self._builder.adopt(
+                model.motion, self._mover, self._mover_from_model
+            )
+        for item in model.instances:
+            placed = replace(item, mesh=first_mesh + item.mesh)
+            if item.skin >= 0:
+                placed.skin = first_skin + item.skin
+                placed.node = first_node + item.node if item.node >= 0 else -1
+            else:
+                placed.world_from_local = self._world_from_model @ item.world_from_local
+                placed.node = self._node(item.node, first_node, item.world_from_local)
+                placed.dynamic = item.dynamic or placed.node >= 0
+            scene.instances.append(placed)
+        for light in model.lights:
+            moved = _moved_light(light, self._world_from_model)
+            moved.node = self._node(light.node, first_node, _light_frame(light))
+            scene.lights.append(moved)
         for camera in model.cameras:
-            scene.cameras.append(_moved_camera(camera, world_from_model, scene.cameras))
+            seen = _moved_camera(camera, self._world_from_model, scene.cameras)
+            seen.node = self._node(camera.node, first_node, camera.world_from_view)
+            scene.cameras.append(seen)
+
+    def _node(self, node: int, first_node: int, model_from_local: FloatArray) -> int:
+        """The scene's node of what has this node in the model; -1 where nothing moves it."""
+        if node >= 0:
+            return first_node + node
+        if self._mover < 0:
+            return -1
+        return self._builder.node(self._mover, self._mover_from_model @ model_from_local)
 
 
 def _adopt(scene: Scene, model: Scene) -> None:
@@ -91,6 +146,7 @@ def _adopt(scene: Scene, model: Scene) -> None:
     scene.textures += model.textures
     scene.materials += [_shifted_material(m, first_texture) for m in model.materials]
     scene.meshes += [_shifted_mesh(mesh, first_material) for mesh in model.meshes]
+    scene.animations += [name for name in model.animations if name not in scene.animations]
     scene.warnings += model.warnings
     scene.notes += model.notes
 
@@ -128,6 +184,18 @@ def _moved_light(light: Light, world_from_model: FloatArray) -> Light:
         position=transforms.transform_points(world_from_model, light.position[None])[0],
         direction=_unit(transforms.transform_vectors(world_from_model, light.direction[None])[0]),
     )
+
+
+def _light_frame(light: Light) -> FloatArray:
+    """world_from_light: -z is where it shines."""
+    return transforms.inverse(transforms.look_at(light.position, light.position + light.direction))
+
+
+def _light_turn(light: Light) -> FloatArray:
+    """`_light_frame` without its place."""
+    turned = _light_frame(light)
+    turned[:3, 3] = 0.0
+    return turned
 
 
 def _moved_camera(camera: Camera, world_from_model: FloatArray, others: list[Camera]) -> Camera:

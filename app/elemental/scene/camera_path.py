@@ -35,7 +35,7 @@ def _hermite(times: F64, values: F64, t: float, loop: bool) -> F64:
     k = min(int(np.searchsorted(times, t, side="right")), len(times) - 1) - 1
     width = times[k + 1] - times[k]
     s = (t - times[k]) / width
-    slope0, slope1 = (_slope(times, values, i, loop) * width for i in (k, k + 1))
+    slope0, slope1 = (slope_at(times, values, i, loop) * width for i in (k, k + 1))
     p0, p1 = values[k], values[k + 1]
     lead = (1.0 + 2.0 * s) * (1.0 - s) ** 2 * p0 + s * (1.0 - s) ** 2 * slope0
     follow = s**2 * (3.0 - 2.0 * s) * p1 + s**2 * (s - 1.0) * slope1
@@ -43,7 +43,7 @@ def _hermite(times: F64, values: F64, t: float, loop: bool) -> F64:
     return point
 
 
-def _slope(times: F64, values: F64, k: int, loop: bool) -> F64:
+def slope_at(times: F64, values: F64, k: int, loop: bool) -> F64:
     """Velocity at key `k`: over its two neighbours, across the seam of a loop."""
     last = len(times) - 1
     if loop and k in (0, last):

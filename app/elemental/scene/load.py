@@ -9,9 +9,12 @@ import numpy as np
 from elemental.core.errors import InputError
 from elemental.core.paths import content_root
 from elemental.scene.defaults import add_default_lights, is_unlit
+from elemental.scene.extent import settle
 from elemental.scene.gltf import load_gltf
 from elemental.scene.model import Scene
 
+EVERY_ANIMATION, NO_ANIMATION = "all", "none"
+"""Words for which animations play, besides their names."""
 GLTF_SUFFIXES = (".gltf", ".glb")
 SCENE_FILE_SUFFIX = ".toml"
 
@@ -20,23 +23,29 @@ SMALLEST_SIZE = 1e-9
 """Metres. Between these, distances squared stay well inside float32 [inferred]."""
 
 
-def load_scene(name_or_path: str | Path, *, default_lights: bool) -> Scene:
+def load_scene(
+    name_or_path: str | Path, *, default_lights: bool, animation: str | None = None
+) -> Scene:
     """Load a `.gltf`, `.glb` or `.toml` file, or the scene `content/scenes/<name>.toml`.
 
     `default_lights` adds a sun and a sky to a scene without light, emission or environment.
+    `animation`: the one that plays, "all" or "none"; None as the scene file says, else all.
     Raises InputError for whatever can't be opened, read or drawn.
     """
     path = _find(name_or_path)
     suffix = path.suffix.lower()
     if suffix in GLTF_SUFFIXES:
-        scene = load_gltf(path)
+        scene = load_gltf(path, animation or EVERY_ANIMATION)
     elif suffix == SCENE_FILE_SUFFIX:
         # Pydantic and its models take 120 ms to import, which glTF files need not pay.
         from elemental.scene.assemble import load_scene_file  # noqa: PLC0415
 
-        scene = load_scene_file(path)
+        scene = load_scene_file(path, animation)
     else:
         raise InputError(path, "", "expected a .gltf, .glb or .toml file")
+    _check_animation(scene, animation or str(scene.settings.get("scene.animation", "")))
+    settle(scene)
+    _drop_unused_meshes(scene)
     _check_drawable(scene)
     if default_lights and is_unlit(scene):
         add_default_lights(scene)
@@ -60,6 +69,22 @@ def _find(name_or_path: str | Path) -> Path:
         return _content_scenes() / f"{name_or_path}{SCENE_FILE_SUFFIX}"
     known = ", ".join(scene_names()) or "none"
     raise InputError(str(name_or_path), "", f"neither a file nor one of the scenes: {known}")
+
+
+def _check_animation(scene: Scene, wanted: str) -> None:
+    if wanted not in ("", EVERY_ANIMATION, NO_ANIMATION, *scene.animations):
+        known = ", ".join(scene.animations) or "none"
+        reason = f"no animation is named {wanted!r}; known: {known}"
+        raise InputError(scene.path, "scene.animation", reason)
+
+
+def _drop_unused_meshes(scene: Scene) -> None:
+    """Meshes that only served to make others of need no room."""
+    used = sorted({instance.mesh for instance in scene.instances})
+    number = {mesh: k for k, mesh in enumerate(used)}
+    scene.meshes = [scene.meshes[mesh] for mesh in used]
+    for instance in scene.instances:
+        instance.mesh = number[instance.mesh]
 
 
 def _check_drawable(scene: Scene) -> None:

@@ -3,8 +3,9 @@
 name = "Courtyard"                  # default: the file's name
 exposure_ev = 0.5                   # stops
 
-[[models]]                          # glTF files; their lights and cameras come along
+[[models]]                          # glTF files; their lights, cameras and animations come along
 file = "courtyard/courtyard.glb"    # beside this file
+name = "courtyard"                  # what motions call it; default: the file's name
 translation = [0.0, 0.0, 0.0]       # m
 rotation_deg = [0.0, 90.0, 0.0]     # about the x, then the y, then the z axis
 scale = 1.0
@@ -20,6 +21,17 @@ inner_angle_deg = 20.0              # half angles of a spot light
 outer_angle_deg = 30.0
 source_radius = 0.05                # m
 casts_shadow = true
+
+[[motions]]                         # moves one model or one of the lights above
+model = "courtyard"                 # or: light = "lamp"
+orbit = { center = [0.0, 1.0, 0.0], axis = [0.0, 1.0, 0.0], period = 8.0 }   # s a turn, < 0 back
+spin = { axis = [0.0, 1.0, 0.0], period = 2.0 }    # about its own origin
+interpolation = "linear"            # between keys; or "step", "smooth" (turns stay linear)
+loop = true                         # or keep to the last key
+keys = [                            # two at least; all but the time have defaults
+  { time = 0.0, translation = [0.0, 0.0, 0.0] },   # m, from where it stands
+  { time = 1.0, rotation_deg = [0.0, 90.0, 0.0], scale = 0.5, visible = true },   # about its origin
+]
 
 [environment]
 file = "sky.hdr"                    # .hdr or .exr, equirectangular; default: constant
@@ -69,6 +81,8 @@ HalfAngle = Annotated[float, Field(gt=0.0, le=90.0)]
 FieldOfView = Annotated[float, Field(ge=0.01, le=179.0)]
 Name = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[^\x00-\x1f\x7f]*$")]
 
+SHORTEST_PERIOD_S = 1e-3
+
 
 class Table(BaseModel):
     model_config = ConfigDict(
@@ -78,6 +92,7 @@ class Table(BaseModel):
 
 class ModelTable(Table):
     file: Name
+    name: Name | None = None
     translation: Vec3 = [0.0, 0.0, 0.0]
     rotation_deg: Vec3 = [0.0, 0.0, 0.0]
     scale: Positive = 1.0
@@ -155,9 +170,56 @@ class PathTable(Table):
 
     @model_validator(mode="after")
     def _goes_forward(self) -> PathTable:
-        times = [key.time for key in self.keys]
-        if any(b <= a for a, b in pairwise(times)):
-            raise ValueError("the keys' times do not increase")
+        _check_increasing([key.time for key in self.keys])
+        return self
+
+
+def _check_increasing(times: list[float]) -> None:
+    if any(b <= a for a, b in pairwise(times)):
+        raise ValueError("the keys' times do not increase")
+
+
+class TurnTable(Table):
+    axis: Vec3 = [0.0, 1.0, 0.0]
+    period: Number
+
+    @model_validator(mode="after")
+    def _turns(self) -> TurnTable:
+        if not any(self.axis):
+            raise ValueError("axis has length 0")
+        if abs(self.period) < SHORTEST_PERIOD_S:
+            raise ValueError(f"period is less than {SHORTEST_PERIOD_S:g} s")
+        return self
+
+
+class OrbitTable(TurnTable):
+    center: Vec3
+
+
+class MotionKeyTable(Table):
+    time: NonNegative
+    translation: Vec3 = [0.0, 0.0, 0.0]
+    rotation_deg: Vec3 = [0.0, 0.0, 0.0]
+    scale: NonNegative = 1.0
+    visible: bool = True
+
+
+class MotionTable(Table):
+    model: Name | None = None
+    light: Name | None = None
+    orbit: OrbitTable | None = None
+    spin: TurnTable | None = None
+    interpolation: Literal["step", "linear", "smooth"] = "linear"
+    loop: bool = True
+    keys: Annotated[list[MotionKeyTable], Field(min_length=2, max_length=10_000)] | None = None
+
+    @model_validator(mode="after")
+    def _moves_something(self) -> MotionTable:
+        if (self.model is None) == (self.light is None):
+            raise ValueError("names either a model or a light")
+        if self.orbit is None and self.spin is None and self.keys is None:
+            raise ValueError("has neither keys nor an orbit nor a spin")
+        _check_increasing([key.time for key in self.keys or ()])
         return self
 
 
@@ -180,6 +242,7 @@ class SceneFile(Table):
     exposure_ev: Annotated[float, Field(ge=-32.0, le=32.0)] | None = None
     models: Annotated[list[ModelTable], Field(min_length=1)]
     lights: list[LightTable] = []
+    motions: list[MotionTable] = []
     environment: EnvironmentTable | None = None
     cameras: list[CameraTable] = []
     camera_path: PathTable | None = None

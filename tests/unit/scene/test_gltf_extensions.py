@@ -108,14 +108,3 @@ def test_unknown_optional_extension_is_one_warning(tmp_path: Path) -> None:
     builder.extend("ACME_curved_space")
     builder.extend("KHR_xmp_json_ld")
     assert len(builder.load(tmp_path).warnings) == 1
-
-
-def test_motion_is_said_to_stand_still(tmp_path: Path) -> None:
-    builder = GltfBuilder()
-    builder.add(TRIANGLE)
-    builder.root["animations"] = [{"channels": [], "samplers": []}]
-    builder.root["meshes"][0]["primitives"][0]["targets"] = [{"POSITION": 0}]
-    builder.root["nodes"][0]["skin"] = 0
-    warnings = " ".join(builder.load(tmp_path).warnings)
-    for word in ("animations", "morph targets", "skins"):
-        assert word in warnings

@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 
 import shapes
 from elemental.core.errors import InputError
+from elemental.scene.evaluate import evaluate
 from elemental.scene.load import load_scene
 from elemental.scene.model import Scene
 from gltf_builder import GltfBuilder
@@ -63,6 +64,14 @@ def seed() -> GltfBuilder:
     builder.node(mesh=mesh, matrix=np.eye(4).reshape(-1).tolist())
     builder.light("spot", {"spot": {"innerConeAngle": 0.1, "outerConeAngle": 0.5}, "range": 5})
     builder.camera(name="cam")
+    skinned = builder.skinned(builder.primitive(positions, mode=5), np.zeros((4, 4)), np.eye(4))
+    bent = builder.morphed(skinned, {"positions": positions, "normals": positions})
+    mover = builder.node(mesh=mesh)
+    skin = builder.skin([mover], np.eye(4)[None])
+    body = builder.node(mesh=builder.mesh(bent, weights=[0.5]), skin=skin)
+    builder.animation((mover, "rotation", [0, 1], np.eye(4)[2:]), (body, "weights", [1], [1]))
+    cubic = np.arange(18).reshape(6, 3)
+    builder.animation((mover, "scale", [0, 2], cubic), interpolation="CUBICSPLINE")
     return builder
 
 
@@ -96,6 +105,11 @@ def check(scene: Scene) -> None:
     for instance in scene.instances:
         assert instance.mesh < len(scene.meshes)
         assert np.isfinite(instance.world_from_local).all()
+        if instance.dynamic:
+            assert instance.node >= 0 or instance.skin >= 0
+    if scene.motion is not None:
+        pose = evaluate(scene, 0.7)
+        assert np.isfinite(pose.world_from_local[pose.visible]).all()
     for light in scene.lights:
         assert np.linalg.norm(light.direction) == pytest.approx(1.0, abs=1e-5)
     for camera in scene.cameras:
@@ -123,7 +137,8 @@ def test_the_seed_is_fine(tmp_path: Path) -> None:
     scene = load_scene(path, default_lights=True)
     check(scene)
     assert scene.warnings == []
-    assert len(scene.meshes) == 4
+    assert len(scene.meshes) == 5
+    assert [i.dynamic for i in scene.instances].count(True) == 3
 
 
 def mutated_bytes(rng: random.Random) -> bytes:

@@ -15,8 +15,10 @@ SUPPORTED = frozenset({
     "KHR_texture_transform",
 })  # fmt: skip
 
-WARNED_WHERE_USED = frozenset({"KHR_materials_transmission", "KHR_texture_basisu"})
-"""Partly honoured; the material or image that uses them gives the warning."""
+WARNED_WHERE_USED = frozenset({
+    "KHR_animation_pointer", "KHR_materials_transmission", "KHR_texture_basisu",
+})  # fmt: skip
+"""Partly honoured; the animation, material or image that uses them gives the warning."""
 
 WITHOUT_EFFECT = frozenset({"KHR_xmp", "KHR_xmp_json_ld"})
 """Nothing to draw."""

@@ -12,6 +12,8 @@ from elemental.scene.gltf import draco
 from elemental.scene.gltf.accessors import Accessors, normalize
 from elemental.scene.gltf.container import Document
 from elemental.scene.gltf.fields import Field
+from elemental.scene.gltf.morphs import read_morphs
+from elemental.scene.gltf.skins import read_influences
 from elemental.scene.mesh_attributes import Primitive
 from elemental.scene.model import ByteArray, FloatArray, IndexArray, Material, Mesh
 
@@ -22,10 +24,10 @@ TRIANGLES = 4
 class Meshes:
     """A document's meshes. Each primitive is completed on first use, and again if mirrored."""
 
-    def __init__(self, document: Document, materials: list[Material]) -> None:
+    def __init__(self, document: Document, accessors: Accessors, materials: list[Material]) -> None:
         self.meshes: list[Mesh] = []
         self._document = document
-        self._accessors = Accessors(document)
+        self._accessors = accessors
         self._materials = materials
         self._declared_materials = len(document.root.elements("materials"))
         self._fields = document.root.elements("meshes")
@@ -49,6 +51,9 @@ class Meshes:
     def _read_mesh(self, field: Field, index: int) -> list[int]:
         name = field.text_or("name", f"mesh{index}")
         primitives = list(field.need("primitives"))
+        counts = {len(primitive.elements("targets")) for primitive in primitives}
+        if len(counts) > 1:
+            raise field.error("its primitives differ in their number of morph targets")
         meshes = []
         for k, primitive in enumerate(primitives):
             part = name if len(primitives) == 1 else f"{name}.{k}"
@@ -63,17 +68,16 @@ class Meshes:
         if mode in ("points", "lines"):
             self._document.report.warn("meshes", "points and lines are not drawn")
             return None
-        if field.find("targets") is not None:
-            self._document.report.warn("meshes", "morph targets are ignored")
         material = field.index_or_none("material", self._declared_materials, "materials")
         material = self._default_material() if material is None else material
         compressed = field.extension(draco.EXTENSION)
         source = draco.DracoPrimitive(self._document, compressed) if compressed else None
         primitive = self._read_vertices(field, source)
         primitive.indices = self._read_indices(field, source, mode, len(primitive.positions))
-        primitive, dropped = mesh_attributes.drop_degenerate(primitive)
-        if dropped:
-            self._document.report.count("triangles without area are dropped", dropped)
+        if primitive.influences is None and primitive.morphs is None:  # others may open
+            primitive, dropped = mesh_attributes.drop_degenerate(primitive)
+            if dropped:
+                self._document.report.count("triangles without area are dropped", dropped)
         if not len(primitive.indices):
             return None
         primitive = mesh_attributes.drop_unused_vertices(primitive)
@@ -113,6 +117,8 @@ class Meshes:
             uv0=arrays["TEXCOORD_0"],
             uv1=arrays["TEXCOORD_1"],
             colors=_color_bytes(arrays["COLOR_0"]),
+            influences=read_influences(attributes, self._accessors, len(positions)),
+            morphs=read_morphs(self._document, field, self._accessors, len(positions)),
         )
 
     def _read_attribute(

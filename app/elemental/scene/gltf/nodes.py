@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,40 +12,64 @@ from elemental.core import transforms
 from elemental.scene.gltf.container import Document
 from elemental.scene.gltf.fields import Field
 from elemental.scene.model import FloatArray
+from elemental.scene.motion import Path
+from elemental.scene.placement import mirrors, singular
 
 AFFINE_ROW = (0.0, 0.0, 0.0, 1.0)
 AFFINE_TOLERANCE = 1e-5
-SINGULAR_VOLUME = 1e-9
-"""Least volume of a transformed unit cube, as a part of its edges' product, that still counts as
-three-dimensional [inferred]."""
-SHORTEST_EDGE = 1e-15
-"""Least length of such an edge: float32 still holds the inverse's cube [inferred]."""
+NOTHING_HELD: Mapping[tuple[int, Path], npt.NDArray[np.float64]] = {}
 
 
 @dataclass(frozen=True)
 class PlacedNode:
-    """A node that the scene shows, with its transform to the world."""
+    """A node that the scene shows, with its transform to the world.
+
+    `place`: offset @ T @ R @ S in the frame of its parent, which is None for a root;
+    `world_from_parent` (4, 4) float64.
+    """
 
     field: Field
     index: int
     world_from_local: FloatArray
+    place: Place
+    parent: int | None
+    world_from_parent: npt.NDArray[np.float64]
 
     def name_or(self, default: str) -> str:
         return self.field.text_or("name", default)
 
     @property
     def is_singular(self) -> bool:
-        return bool(volume_ratio(self.world_from_local) < SINGULAR_VOLUME)
+        return bool(singular(self.world_from_local))
 
     @property
     def is_mirrored(self) -> bool:
-        linear = self.world_from_local[:3, :3].astype(np.float64)
-        return bool(np.linalg.det(linear) < 0.0)
+        return bool(mirrors(self.world_from_local))
 
 
-def placed_nodes(document: Document) -> Iterator[PlacedNode]:
+@dataclass(frozen=True)
+class Place:
+    """Where a node stands in its parent: offset (4, 4), or a translation, a rotation as a
+    quaternion x, y, z, w, and a scale, float64; the others neutral."""
+
+    offset: npt.NDArray[np.float64]
+    translation: npt.NDArray[np.float64]
+    rotation: npt.NDArray[np.float64]
+    scale: npt.NDArray[np.float64]
+
+    def matrix(self) -> npt.NDArray[np.float64]:
+        """(4, 4) parent_from_local."""
+        composed = transforms.compose(self.translation, self.rotation, self.scale)
+        matrix: npt.NDArray[np.float64] = self.offset @ composed.astype(np.float64)
+        return matrix
+
+
+def placed_nodes(
+    document: Document, held: Mapping[tuple[int, Path], npt.NDArray[np.float64]] = NOTHING_HELD
+) -> Iterator[PlacedNode]:
     """The nodes of the file's default scene, parents first, in the file's order.
 
+    `held`: values by node and path that replace the file's, of animations that stand still.
     Raises InputError for cycles, for nodes with two parents, and for transforms that overflow.
     """
     nodes = document.root.elements("nodes")
@@ -58,23 +82,15 @@ def placed_nodes(document: Document) -> Iterator[PlacedNode]:
         if index in visited:
             raise node.error("is reached twice: a cycle, or a root that is also a child")
         visited.add(index)
+        place = _place(node, index, held)
         with np.errstate(over="ignore", invalid="ignore"):
-            world_from_local = world_from_parent @ _local_matrix(node)
+            world_from_local = world_from_parent @ place.matrix()
             narrow = world_from_local.astype(np.float32)
         if not np.isfinite(narrow).all():
             raise node.error("its transform to the world overflows")
-        yield PlacedNode(node, index, narrow)
+        yield PlacedNode(node, index, narrow, place, parents[index], world_from_parent)
         children = [child.integer() for child in node.elements("children")]
         pending += [(child, world_from_local) for child in reversed(children)]
-
-
-def volume_ratio(world_from_local: FloatArray) -> float:
-    """|det| of the linear part over the product of its columns' lengths: 1 where orthogonal."""
-    linear = world_from_local[:3, :3].astype(np.float64)
-    edges = np.linalg.norm(linear, axis=0)
-    if edges.min() < SHORTEST_EDGE:
-        return 0.0
-    return abs(float(np.linalg.det(linear / edges)))
 
 
 def _parents(nodes: list[Field]) -> list[int | None]:
@@ -103,20 +119,24 @@ def _roots(document: Document, parents: list[int | None]) -> list[int]:
     return roots
 
 
-def _local_matrix(node: Field) -> npt.NDArray[np.float64]:
+def _place(
+    node: Field, index: int, held: Mapping[tuple[int, Path], npt.NDArray[np.float64]]
+) -> Place:
     matrix = node.find("matrix")
+    m = np.eye(4)
     if matrix is not None:
         m = matrix.numbers(16).reshape(4, 4).T.astype(np.float64)
         if np.abs(m[3] - AFFINE_ROW).max() > AFFINE_TOLERANCE:
             raise matrix.error("expected a last row of 0 0 0 1")
         m[3] = AFFINE_ROW
-        return m
-    translation, rotation, scale = (node.find(k) for k in ("translation", "rotation", "scale"))
-    q = rotation.numbers(4) if rotation else np.array(AFFINE_ROW, np.float32)
-    if rotation and not q.any():
-        raise rotation.error("a quaternion of length 0")
-    return transforms.compose(
-        translation.numbers(3) if translation else (0.0, 0.0, 0.0),
-        q,
-        scale.numbers(3) if scale else (1.0, 1.0, 1.0),
-    ).astype(np.float64)
+
+    def part(path: Path, default: tuple[float, ...]) -> npt.NDArray[np.float64]:
+        if (index, path) in held:
+            return held[index, path]
+        found = node.find(path) if matrix is None else None
+        return found.numbers(len(default)).astype(np.float64) if found else np.array(default)
+
+    rotation = part("rotation", AFFINE_ROW)
+    if not rotation.any():
+        raise node.need("rotation").error("a quaternion of length 0")
+    return Place(m, part("translation", (0.0,) * 3), rotation, part("scale", (1.0,) * 3))
