@@ -41,14 +41,15 @@ struct VoxelFragment {
     uint emissive;
 };
 
-// Averages over a voxel's fragments, 16 bytes: GI-03's "material attributes, normal".
-// The normal keeps its length: short means that the fragments disagree.
+// Averages over a voxel's fragments, 12 bytes: GI-03's "material attributes, normal".
+// normal: snorm8 xyz, whose length tells how much the fragments agree; high byte: how many they were,
+// 255 for more.
 struct VoxelAttributes {
     uint albedo;
     uint normal;
     uint emissive;
-    uint fragments;
 };
+const uint ATTRIBUTES_COUNT_SHIFT = 24u;
 
 // Where a brick belongs. cell: 9:9:9 node coordinates, 4 bits of level, top bit: a leaf.
 // node: 24 bits of node index, 8 bits that say which of its own 2x2x2 points hold anything.
@@ -81,7 +82,7 @@ struct OctreeState {
     DispatchArgs fragments;
     DispatchArgs interior_bricks;      // a thread a brick above the finest level
     DispatchArgs leaf_bricks;          // a thread a brick of the finest level
-    DispatchArgs leaf_voxels;          // a thread a voxel, over bricks of the levels that may hold leaves
+    DispatchArgs leaf_voxels;          // a thread an occupied voxel of a leaf
     DispatchArgs level_voxels[10];     // a thread an occupied voxel of this level, above the finest
     uint level_first[12];              // first brick of each level; [levels] = brick_count
 };

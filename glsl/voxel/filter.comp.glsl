@@ -4,11 +4,10 @@
 
 #include "lib/dispatch.glsl"
 #include "lib/sided_voxel.glsl"
+#include "lib/voxel_list.glsl"
 #include "shared/octree_level.glsl"
 
 layout(local_size_x = 64) in;
-
-layout(std430) readonly buffer FilterList { uint filter_list[]; };
 
 // Half of a slab: two halves in a row are as opaque as the whole.
 vec4 half_slab(vec4 slab) {
@@ -68,7 +67,7 @@ void main() {
     uint item = linear_thread_id();
     int level = u_level.level;
     if (item >= octree_state.level_voxels[level].threads) return;
-    uint voxel = filter_list[octree_state.level_first[level] * BRICK_VOXELS + item];
+    uint voxel = filtered_voxel_of_item(octree_state.level_first[level], item);
     Brick place = bricks[voxel / BRICK_VOXELS];
     uint octant = voxel % BRICK_VOXELS;
     uvec3 own_cell = unpack_cell(place.cell);

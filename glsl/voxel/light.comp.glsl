@@ -1,4 +1,4 @@
-// Shades every leaf voxel and stores its radiance and opacity: gather, not scatter.
+// Shades every occupied leaf voxel and stores its radiance and opacity: gather, not scatter.
 // [Mittring12 "Voxel Lighting Pipeline": direct light with shadow maps, ambient colour, combine
 // with albedo, add emissive]
 
@@ -9,6 +9,7 @@
 #include "lib/math.glsl"
 #include "lib/shadow.glsl"
 #include "lib/voxel_gather.glsl"
+#include "lib/voxel_list.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -41,13 +42,10 @@ vec3 direct_irradiance(vec3 p_ws, vec3 normal, float certainty, float spacing) {
 }
 
 void main() {
-    uint index = linear_thread_id();
-    if (index >= octree_state.leaf_count * BRICK_VOXELS) return;
+    uint item = linear_thread_id();
+    if (item >= octree_state.leaf_voxels.threads) return;
+    uint index = leaf_voxel_of_item(item);
     VoxelAttributes voxel = attributes[index];
-    if (voxel.fragments == 0u) {
-        radiance[index] = uvec2(0u);
-        return;
-    }
     uint brick = index / BRICK_VOXELS + octree_state.level_first[u_octree.coarsest_leaf];
     uint octant = index % BRICK_VOXELS;
     uint cell = bricks[brick].cell;

@@ -11,9 +11,7 @@ layout(local_size_x = 64) in;
 layout(std430) readonly buffer NodeBits { uint node_words[]; };
 layout(std430) readonly buffer Points { uint point_words[]; };
 layout(std430) buffer State { OctreeState octree_state; };
-// Brick * 8 + octant of the occupied voxels above the finest level, each level's from its first
-// brick * 8 on, in no order.
-layout(std430) writeonly buffer FilterList { uint filter_list[]; };
+layout(std430) writeonly buffer VoxelList { uint voxel_list[]; };  // see lib/voxel_list.glsl
 layout(std430) writeonly buffer Nodes { Node nodes[]; };
 layout(std430) writeonly buffer Bricks { Brick bricks[]; };
 
@@ -58,16 +56,23 @@ uint own_points(int level, uvec3 cell) {
     return (point_words[cell_word(level + 1, code)] >> (code & 31u)) & 0xffu;
 }
 
-// Queues the occupied voxels of a brick for filtering.
-void list_voxels(uint brick, int level, uint points) {
+// Lists the occupied voxels of a brick: a leaf's to be lit, others' to be filtered.
+void list_voxels(uint brick, int level, bool leaf, uint points) {
     uint count = uint(bitCount(points));
     if (count == 0u) return;
-    uint at = atomicAdd(octree_state.level_voxels[level].threads, count);
-    reach_item(octree_state.level_voxels[level].x, octree_state.level_voxels[level].y, at + count - 1u, BRICK_GROUP);
-    uint first = octree_state.level_first[level] * BRICK_VOXELS;
+    uint place;
+    uint first_voxel;
+    if (leaf) {
+        place = u_octree.interior_capacity * BRICK_VOXELS + atomicAdd(octree_state.leaf_voxels.threads, count);
+        first_voxel = (brick - octree_state.level_first[u_octree.coarsest_leaf]) * BRICK_VOXELS;
+    } else {
+        place = octree_state.level_first[level] * BRICK_VOXELS
+                + atomicAdd(octree_state.level_voxels[level].threads, count);
+        first_voxel = brick * BRICK_VOXELS;
+    }
     for (; points != 0u; points &= points - 1u) {
-        filter_list[first + at] = brick * BRICK_VOXELS + uint(findLSB(points));
-        ++at;
+        voxel_list[place] = first_voxel + uint(findLSB(points));
+        ++place;
     }
 }
 
@@ -84,7 +89,7 @@ void write_node(uint index, int level, uvec3 cell, bool exists, uint brick) {
         // Filtered points beside a coarser region hold what that lends them.
         bool lent = !leaf && u_octree.coarsest_leaf < u_octree.leaf_level;
         uint points = lent ? 0xffu : own_points(level, cell);
-        if (!leaf) list_voxels(brick, level, points);
+        list_voxels(brick, level, leaf, points);
         uint place = index | (points << BRICK_POINTS_SHIFT);
         bricks[brick] = Brick(pack_cell(cell, level, leaf), place);
     } else {

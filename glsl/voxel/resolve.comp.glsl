@@ -1,36 +1,46 @@
-// Turns a voxel's sums into the averages that lighting reads.
+// Averages a voxel's fragments into what lighting reads: see link.comp.
 
 #include "lib/dispatch.glsl"
-#include "shared/octree.glsl"
+#include "lib/voxel_list.glsl"
 #include "lib/packing.glsl"
 
 layout(local_size_x = 64) in;
 
 layout(std430) readonly buffer State { OctreeState octree_state; };
-layout(std430) readonly buffer ColorSums { uvec4 color_sums[]; };
-layout(std430) readonly buffer NormalSums { ivec4 normal_sums[]; };
-layout(std430) readonly buffer EmissiveSums { uvec4 emissive_sums[]; };
-layout(std430) writeonly buffer Attributes { VoxelAttributes attributes[]; };
+layout(std430) readonly buffer Fragments { VoxelFragment fragments[]; };
+layout(std430) buffer Attributes { VoxelAttributes attributes[]; };
+
+uvec4 bytes_of(uint word) { return uvec4(word, word >> 8, word >> 16, word >> 24) & 0xffu; }
 
 void main() {
-    uint voxel = linear_thread_id();
-    if (voxel >= octree_state.leaf_count * BRICK_VOXELS) return;
-    VoxelAttributes result = VoxelAttributes(0u, 0u, 0u, 0u);
-    uvec4 color = color_sums[voxel];
-    if (color.x > 0u) {
-        float inverse = 1.0 / float(color.x);
-        ivec4 normal = normal_sums[voxel];
-        vec4 albedo = vec4(color.yzw, normal.w) * (inverse / 255.0);
-        result.albedo = packUnorm4x8(albedo);
-        result.normal = packSnorm4x8(vec4(vec3(normal.xyz) * (inverse / 127.0), 0.0));
-        // Emission is averaged over what emits: a lamp keeps its power where the ceiling that it
-        // hangs from shares its voxels.
-        if (u_octree.fixed_point > 0.0) {
-            uvec4 emitted = emissive_sums[voxel];
-            float scale = 1.0 / (float(max(emitted.w, 1u)) * u_octree.fixed_point);
-            result.emissive = rgb9e5_pack(vec3(emitted.xyz) * scale);
-        }
-        result.fragments = color.x;
+    uint item = linear_thread_id();
+    if (item >= octree_state.leaf_voxels.threads) return;
+    uint voxel = leaf_voxel_of_item(item);
+    uint count = 0u;
+    uint emitting = 0u;
+    uvec4 albedo = uvec4(0u);
+    ivec3 normal = ivec3(0);
+    uvec3 emitted = uvec3(0u);
+    for (uint link = attributes[voxel].albedo; link != 0u;) {
+        VoxelFragment fragment = fragments[link - 1u];
+        link = fragment.position;
+        ++count;
+        albedo += bytes_of(fragment.albedo);
+        normal += ivec3(round(normal_snorm8_unpack(fragment.normal) * 127.0));
+        uvec3 radiance = uvec3(rgb9e5_unpack(fragment.emissive) * u_octree.fixed_point + 0.5);
+        emitted += radiance;
+        if (radiance != uvec3(0u)) ++emitting;
     }
+    if (count == 0u) return;
+
+    float inverse = 1.0 / float(count);
+    VoxelAttributes result;
+    result.albedo = packUnorm4x8(vec4(albedo) * (inverse / 255.0));
+    result.normal = packSnorm4x8(vec4(vec3(normal) * (inverse / 127.0), 0.0)) & 0x00ffffffu;
+    result.normal |= min(count, 255u) << ATTRIBUTES_COUNT_SHIFT;
+    // Emission is averaged over what emits: a lamp keeps its power where the ceiling that it hangs
+    // from shares its voxels.
+    float scale = emitting > 0u ? 1.0 / (float(emitting) * u_octree.fixed_point) : 0.0;
+    result.emissive = rgb9e5_pack(vec3(emitted) * scale);
     attributes[voxel] = result;
 }

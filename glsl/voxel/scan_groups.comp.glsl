@@ -1,7 +1,7 @@
 // Prefix sum over 64-node blocks, second part: the groups' sums, the totals, and the arguments of
 // every later indirect dispatch. One work group.
 
-#include "lib/dispatch.glsl"
+#include "lib/dispatch_args.glsl"
 #include "lib/node_counts.glsl"
 #include "lib/prefix_sum.glsl"
 
@@ -11,11 +11,6 @@ layout(std430) readonly buffer NodeBits { uint node_words[]; };
 // A rank a block, then a sum a group: see scan_blocks. Coherent: one thread reads what others wrote.
 layout(std430) coherent buffer Ranks { uvec2 ranks[]; };
 layout(std430) buffer State { OctreeState octree_state; };
-
-DispatchArgs dispatch_args(uint threads, uint group) {
-    uvec3 groups = linear_dispatch_args(threads, group);
-    return DispatchArgs(groups.x, groups.y, groups.z, threads);
-}
 
 uvec2 rank_of_block(uint block) { return ranks[block] + ranks[u_octree.block_count + block / SCAN_BLOCKS]; }
 
@@ -86,11 +81,10 @@ void main() {
     octree_state.interior_asked = before_finest;
     octree_state.interior_bricks = dispatch_args(octree_state.interior_count, BRICK_GROUP);
     octree_state.leaf_bricks = dispatch_args(kept - octree_state.interior_count, BRICK_GROUP);
-    octree_state.leaf_voxels = dispatch_args(octree_state.leaf_count * BRICK_VOXELS, BRICK_GROUP);
     for (int level = 0; level <= levels; ++level) {
         octree_state.level_first[level] = min(bricks_before_level(level, all.x), kept);
     }
-    for (int level = 0; level < levels; ++level) {
-        octree_state.level_voxels[level] = DispatchArgs(0u, 1u, 1u, 0u);  // filled by nodes.comp
-    }
+    // Counted by nodes.comp, completed by lists.comp.
+    octree_state.leaf_voxels.threads = 0u;
+    for (int level = 0; level < levels; ++level) octree_state.level_voxels[level].threads = 0u;
 }

@@ -158,6 +158,13 @@ def _run(stage: Stage, body: str, count: int) -> Array:
     return np.asarray(np.rint(values))
 
 
+def fragment_counts(stage: Stage) -> Array:
+    """(S, 8) fragments of each leaf voxel, 255 for more, by slot and voxel."""
+    words = stage.octree.attributes.read(layouts().struct("VoxelAttributes"))
+    words = words[: stage.counts.leaves * 8]
+    return np.asarray(words["normal"] >> constant("ATTRIBUTES_COUNT_SHIFT")).reshape(-1, 8)
+
+
 def leaf_values(stage: Stage) -> tuple[Array, Array]:
     """(S, 8, 4) premultiplied radiance and opacity, (S, 8, 3) mean normals, by slot and voxel.
 

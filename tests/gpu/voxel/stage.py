@@ -123,7 +123,10 @@ class Stage(Lit):
         g = self.device.begin_frame()
         if make_graph is not None:
             g = make_graph(self.device)
-        build(g, self.octree, voxelize(g, self.gpu, self.octree))
+        queue = voxelize(g, self.gpu, self.octree)
+        as_filled = g.buffer("queue as filled", queue.nbytes)  # building links the fragments
+        g.copy_buffer(queue, as_filled)
+        build(g, self.octree, queue)
         buffers = {r.name: r for r in g.resources if isinstance(r, BufferHandle)}
         for handle in buffers.values():
             g.keep(handle)
@@ -131,8 +134,8 @@ class Stage(Lit):
         for name, handle in buffers.items():
             assert handle.physical is not None
             self.transients[name] = handle.physical.read(np.uint32, handle.nbytes // 4).copy()
-        queue = self.transients["voxel.fragments"].view(layouts().struct("VoxelFragment"))
-        self.fragments: Array = queue[: self.counts.fragments]
+        fragments = self.transients["queue as filled"].view(layouts().struct("VoxelFragment"))
+        self.fragments: Array = fragments[: self.counts.fragments]
 
     def light(self, bounces: int = 1) -> None:
         """Light, filter and compress anew."""

@@ -17,7 +17,15 @@ import pytest
 from elemental.passes.voxel.grid import REGION_SIDE
 from gpu.rig import vector
 from gpu.voxel.digest import contents
-from gpu.voxel.pools import ABSENT, Pools, leaf_values, read_leaves, read_sided, sided_values
+from gpu.voxel.pools import (
+    ABSENT,
+    Pools,
+    fragment_counts,
+    leaf_values,
+    read_leaves,
+    read_sided,
+    sided_values,
+)
 from gpu.voxel.scenes import grid_with, jumble
 from gpu.voxel.stage import MakeStage, Stage
 
@@ -145,7 +153,7 @@ def test_pools_are_addressed_by_the_node(jumbled: Stage) -> None:
     pools, counts = Pools.read(jumbled), jumbled.counts
     leaves = np.flatnonzero(pools.level == jumbled.own_grid.leaf_level)
     assert counts.leaves == len(leaves)
-    held = jumbled.octree.attributes.read(np.uint32).reshape(-1, 8, 4)[: counts.leaves, :, 3]
+    held = fragment_counts(jumbled)
     points = jumbled.fragment_points + jumbled.own_grid.resolution // 2
     brick = pools.brick_at(points >> 1, jumbled.own_grid.leaf_level)
     slot, voxel = brick - leaves[0], (points & 1) @ BITS

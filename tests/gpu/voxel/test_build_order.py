@@ -21,7 +21,7 @@ from elemental.passes.voxel.grid import Grid
 from elemental.scene.model import Scene
 from gpu.rig import at, scene, vector
 from gpu.voxel.digest import contents, digest
-from gpu.voxel.pools import Pools
+from gpu.voxel.pools import Pools, fragment_counts
 from gpu.voxel.scenes import colored, glowing, jumble, part
 from gpu.voxel.stage import MakeStage, Stage
 from shapes import quad
@@ -85,8 +85,8 @@ def test_a_build_keeps_nothing_of_the_one_before(device: Device, stage: MakeStag
     """A second build of fewer fragments, in the same pools, is what a first one would be."""
     made, fresh = stage(jumble()), stage(jumble(), bounces=0)
     half = made.fragments[::2].copy()
-    queue = device.buffer("half", half)
     for one in (made, fresh):
+        queue = device.buffer("half", half)
         state = one.state.copy()
         state["fragment_count"] = len(half)
         state["fragments"]["x"] = -(-len(half) // 128)
@@ -99,9 +99,9 @@ def test_a_build_keeps_nothing_of_the_one_before(device: Device, stage: MakeStag
         build(g, one.octree, queue)
         g.execute()
         one.light()
+        queue.release()
     assert made.counts == fresh.counts
     assert contents(made) == contents(fresh)
-    queue.release()
 
 
 def lamp_on_a_ceiling() -> Scene:
@@ -123,7 +123,7 @@ def test_attributes_average_all_fragments_of_a_voxel(
     slots = (brick - first) * 8 + (points & 1) @ np.array([1, 2, 4])
     struct = layouts().struct("VoxelAttributes")
     held = jumbled.octree.attributes.read(struct, jumbled.counts.leaves * 8)[np.unique(slots)]
-    assert held["fragments"].max() >= 2
+    assert fragment_counts(jumbled).max() >= 2
 
     albedo = averages(slots, fragments["albedo"].copy().view(np.uint8).reshape(-1, 4))
     got = held["albedo"].copy().view(np.uint8).reshape(-1, 4)

@@ -18,7 +18,7 @@ from elemental.passes.voxel.grid import REGION_SIDE, Grid
 from elemental.scene.model import Region
 from gpu.rig import at, scene, sun, vector
 from gpu.voxel.numpy_octree import leaf_points
-from gpu.voxel.pools import ABSENT, Pools
+from gpu.voxel.pools import ABSENT, Pools, fragment_counts
 from gpu.voxel.probe import look_up
 from gpu.voxel.scenes import grid_with, jumble, part, turned
 from gpu.voxel.stage import MakeStage, Stage
@@ -82,8 +82,8 @@ def test_leaves_of_a_patchwork_are_of_their_regions_level(patchwork: Stage) -> N
 
 def test_every_fragment_lands_in_a_leaf(patchwork: Stage) -> None:
     """The attributes of all levels together count each once."""
-    counts = patchwork.octree.attributes.read(np.uint32).reshape(-1, 4)[:, 3]
-    assert counts[: patchwork.counts.leaves * 8].sum() == len(patchwork.fragments)
+    counts = fragment_counts(patchwork).ravel()
+    assert counts.sum() == len(patchwork.fragments)
     levels, points = leaf_points(patchwork.own_grid, patchwork.fragment_points)
     pools = Pools.read(patchwork)
     first = patchwork.state["level_first"][patchwork.own_grid.coarsest_leaf]

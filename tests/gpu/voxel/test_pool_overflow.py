@@ -22,7 +22,7 @@ from elemental.passes.voxel import sizing
 from elemental.passes.voxel.grid import REGION_SIDE
 from elemental.passes.voxel.octree import Capacity, Counts, Octree
 from gpu.voxel.numpy_octree import DenseOctree
-from gpu.voxel.pools import ABSENT, Pools, read_leaves, read_sided
+from gpu.voxel.pools import ABSENT, Pools, fragment_counts, read_leaves, read_sided
 from gpu.voxel.probe import gather, look_up, trace
 from gpu.voxel.scenes import grid_with, jumble
 from gpu.voxel.stage import BUDGET, Lit, MakeStage, Stage
@@ -49,7 +49,7 @@ def guarded(device: Device) -> Graph:
 
 def tell(octree: Octree, told: Capacity) -> None:
     """Fill the pools with canaries and tell the GPU of a smaller capacity than they have."""
-    pools = octree.nodes, octree.bricks, octree.filter_list, octree.attributes, octree.radiance
+    pools = octree.nodes, octree.bricks, octree.voxel_list, octree.attributes, octree.radiance
     for pool in pools:
         pool.write(np.full(pool.nbytes // 4, CANARY, np.uint32))
     block = octree.params["Octree"].copy()
@@ -79,7 +79,7 @@ def tails(stage: Stage, told: Capacity) -> dict[str, tuple[Array, int]]:
     struct = {
         name: layouts().struct(name).itemsize for name in ("Node", "Brick", "VoxelAttributes")
     }
-    sums = told.leaves * 8 * 4
+    lit = min(told.leaves * 8, told.fragments)
     leaves = read_leaves(stage)[max(told.bricks - told.interior, 0) :]
     return {
         "nodes": (
@@ -87,13 +87,10 @@ def tails(stage: Stage, told: Capacity) -> dict[str, tuple[Array, int]]:
             CANARY,
         ),
         "bricks": (words("bricks", told.bricks * struct["Brick"]), CANARY),
-        "filter list": (words("filter_list", told.interior * 8 * 4), CANARY),
-        "attributes": (words("attributes", told.leaves * 8 * struct["VoxelAttributes"]), CANARY),
-        "radiance": (words("radiance", told.leaves * 8 * 8), CANARY),
+        "voxel list": (words("voxel_list", (told.interior * 8 + lit) * 4), CANARY),
+        "attributes": (words("attributes", told.leaves * 8 * struct["VoxelAttributes"]), 0),
+        "radiance": (words("radiance", told.leaves * 8 * 8), 0),
         "fragments": (stage.transients["voxel.fragments"][told.fragments * 4 :], CANARY),
-        "color sums": (stage.transients["voxel.color_sums"][sums:], 0),
-        "normal sums": (stage.transients["voxel.normal_sums"][sums:], 0),
-        "emissive sums": (stage.transients["voxel.emissive_sums"][sums:], 0),
         "sided": (stage.sided[told.interior :], 0),
         "sides": (read_sided(stage)[told.interior :], 0),
         "leaves": (leaves, 0),
@@ -176,7 +173,7 @@ def test_fragments_of_dropped_leaves_go_nowhere(stage: MakeStage, scarce: str) -
     assert made.counts.bricks_dropped > 0
     pools = Pools.read(made)
     first = int(made.state["level_first"][grid.coarsest_leaf])
-    counted = made.octree.attributes.read(np.uint32).reshape(-1, 8, 4)[: made.counts.leaves, :, 3]
+    counted = fragment_counts(made)
     assert not counted[~pools.is_leaf[first:]].any()
     assert 0 < counted.sum() < len(made.fragments)
 

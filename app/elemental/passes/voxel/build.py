@@ -22,12 +22,11 @@ REDUCE = Compute("voxel/reduce.comp.glsl")
 SCAN_BLOCKS = Compute("voxel/scan_blocks.comp.glsl")
 SCAN_GROUPS = Compute("voxel/scan_groups.comp.glsl")
 NODES = Compute("voxel/nodes.comp.glsl")
-ACCUMULATE = Compute("voxel/accumulate.comp.glsl")
+LISTS = Compute("voxel/lists.comp.glsl")
+LINK = Compute("voxel/link.comp.glsl")
 RESOLVE = Compute("voxel/resolve.comp.glsl")
 
 BLOCK_BYTES = 8
-SUM_BYTES_A_BRICK = 8 * 16
-"""Four 32-bit sums for each of eight voxels."""
 
 
 @cache
@@ -101,31 +100,32 @@ def build(g: Graph, octree: Octree, fragments: AnyBuffer) -> None:
             "State": octree.state,
             "Nodes": octree.nodes,
             "Bricks": octree.bricks,
-            "FilterList": octree.filter_list,
+            "VoxelList": octree.voxel_list,
         },
         params=octree.params,
         threads=octree.grid.block_count,
     )
-    average(g, octree, fragments)
+    g.compute(LISTS, writes={"State": octree.state}, params=octree.params, groups=1)
+    average(g, octree, fragments, found)
 
 
-def average(g: Graph, octree: Octree, fragments: AnyBuffer) -> None:
-    """Leaf attributes: the averages of each voxel's fragments, summed in integers."""
-    nbytes = octree.capacity.leaves * SUM_BYTES_A_BRICK
-    colors = g.buffer("voxel.color_sums", nbytes)
-    normals = g.buffer("voxel.normal_sums", nbytes)
-    emissive = g.buffer("voxel.emissive_sums", nbytes if octree.max_emission > 0.0 else 16)
-    for sums in (colors, normals, emissive):
-        g.clear_buffer(sums)
+def average(g: Graph, octree: Octree, fragments: AnyBuffer, found: dict[str, Ref]) -> None:
+    """Leaf attributes: the averages of each voxel's fragments, summed in integers.
+
+    ``found`` is what `find_nodes` returned.
+    """
+    # Voxels without fragments stay as they are now.
+    g.clear_buffer(octree.attributes)
+    g.clear_buffer(octree.radiance)
     g.compute(
-        ACCUMULATE,
+        LINK,
         reads={
             "State": octree.state,
-            "Fragments": fragments,
-            "Nodes": octree.nodes,
             "Regions": octree.regions,
+            "NodeBits": found["NodeBits"],
+            "Ranks": found["Ranks"],
         },
-        writes={"ColorSums": colors, "NormalSums": normals, "EmissiveSums": emissive},
+        writes={"Fragments": fragments, "Attributes": octree.attributes},
         params=octree.params,
         indirect=(octree.state, state_offset("fragments")),
     )
@@ -133,9 +133,8 @@ def average(g: Graph, octree: Octree, fragments: AnyBuffer) -> None:
         RESOLVE,
         reads={
             "State": octree.state,
-            "ColorSums": colors,
-            "NormalSums": normals,
-            "EmissiveSums": emissive,
+            "Fragments": fragments,
+            "VoxelList": octree.voxel_list,
         },
         writes={"Attributes": octree.attributes},
         params=octree.params,

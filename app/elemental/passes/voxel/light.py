@@ -36,6 +36,7 @@ def light_voxels(
         "State": octree.state,
         "Bricks": octree.bricks,
         "Attributes": octree.attributes,
+        "VoxelList": octree.voxel_list,
         **shadows.reads(),
     }
     params = {**octree.params, **shadows.params()}
@@ -63,7 +64,7 @@ def filter_levels(g: Graph, octree: Octree) -> BufferHandle:
             reads={
                 **octree.voxel_reads(),
                 "Nodes": octree.nodes,
-                "FilterList": octree.filter_list,
+                "VoxelList": octree.voxel_list,
             },
             writes={"Sided": sided},
             params={**octree.params, "OctreeLevel": level_params(level)},

@@ -38,10 +38,10 @@ class Capacity:
     interior: int
 
     def nbytes(self) -> int:
-        """Bytes of the pools that grow with it, the transient fragment queue not counted."""
+        """Bytes at most of the pools that grow with it, without the transient fragment queue."""
         sided = self.interior * 4 * (math.prod(SIDED_TEXELS) + 8)
         finest = (self.bricks - self.interior) * 2 * 4 * math.prod(LEAF_TEXELS)
-        leaves = self.leaves * 8 * (_struct_bytes("VoxelAttributes") + 8)
+        leaves = self.leaves * 8 * (_struct_bytes("VoxelAttributes") + 8 + 4)
         nodes = self.tiles * 8 * _struct_bytes("Node") + self.bricks * _struct_bytes("Brick")
         return sided + finest + leaves + nodes
 
@@ -182,7 +182,7 @@ class Octree(Survey):
 
         self.nodes = pool("nodes", (grid.dense_nodes + capacity.tiles * 8) * _struct_bytes("Node"))
         self.bricks = pool("bricks", capacity.bricks * _struct_bytes("Brick"))
-        self.filter_list = pool("filter_list", capacity.interior * 8 * 4)
+        self.voxel_list = pool("voxel_list", (capacity.interior * 8 + self._lit_voxels()) * 4)
         attribute_bytes = 8 * _struct_bytes("VoxelAttributes")
         self.attributes = pool("attributes", capacity.leaves * attribute_bytes)
         self.radiance = pool("radiance", capacity.leaves * 8 * 8)
@@ -196,6 +196,12 @@ class Octree(Survey):
         self.leaf_colors = atlas("leaf_colors", leaf, RGBA8)
         self.leaf_normals = atlas("leaf_normals", leaf, RGBA8_SNORM)
         self.params = {"Octree": self._pack(sided, leaf)}
+
+    def _lit_voxels(self) -> int:
+        """How many leaf voxels can be occupied. Coarser regions' are by finer neighbours, too."""
+        voxels = self.capacity.leaves * 8
+        uniform = self.grid.coarsest_leaf == self.grid.leaf_level
+        return min(voxels, self.capacity.fragments) if uniform else voxels
 
     def tracing_reads(self) -> dict[str, Ref]:
         """What lib/cone.glsl binds."""
@@ -218,7 +224,7 @@ class Octree(Survey):
     def release(self) -> None:
         """Free every pool."""
         super().release()
-        for pool in (self.nodes, self.bricks, self.filter_list, self.attributes, self.radiance):
+        for pool in (self.nodes, self.bricks, self.voxel_list, self.attributes, self.radiance):
             pool.release()
         for atlas in (self.atlas, self.leaf_colors, self.leaf_normals):
             atlas.release()

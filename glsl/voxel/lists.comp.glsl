@@ -1,0 +1,17 @@
+// The dispatches over the lists of voxels, once their lengths are known. A thread a list.
+
+#include "lib/dispatch_args.glsl"
+
+layout(local_size_x = 16) in;
+
+layout(std430) buffer State { OctreeState octree_state; };
+
+void main() {
+    int level = int(gl_LocalInvocationID.x);
+    if (level < u_octree.leaf_level) {
+        uint voxels = octree_state.level_voxels[level].threads;
+        octree_state.level_voxels[level] = dispatch_args(voxels, BRICK_GROUP);
+    } else if (level == u_octree.leaf_level) {
+        octree_state.leaf_voxels = dispatch_args(octree_state.leaf_voxels.threads, BRICK_GROUP);
+    }
+}
