@@ -1,6 +1,13 @@
 // SVOConeTrace: all light that comes from a direction, within a cone.
 // [Mittring12 "Voxel Cone Tracing Concept", "The Cone Trace function"], [Crassin11]
 
+#ifndef COUNT_CONE_STEPS
+#define COUNT_CONE_STEPS 0
+#endif
+#ifndef CONE_STEP_SHARE
+#define CONE_STEP_SHARE 1.0  // of the steps below
+#endif
+
 #include "lib/svo_lookup.glsl"
 
 // Content-adaptive steps, in voxels of the cone's level: a long one after a clear sample lands at most
@@ -11,6 +18,9 @@ const float CONE_CLEAR = 0.02;         // opacity below which a sample counts as
 const float CONE_OPAQUE = 0.98;        // stop where this much is hidden
 const float CONE_SKIP_EPSILON = 0.01;  // finest voxels past the far side of an empty node
 const int CONE_STEPS_MAX = 256;
+#if COUNT_CONE_STEPS
+int cone_steps = 0;  // samples taken by this invocation's cones
+#endif
 // Cone widths a voxel: a trilinear lookup of a tent-filtered level already sees about two voxels.
 const float CONE_FOOTPRINT = 2.0;
 
@@ -103,6 +113,9 @@ vec4 cone_trace_between(vec3 Pos, vec3 Direction, float ConeAngle, float start_m
     float end = end_m / u_octree.voxel_m;
     vec4 gathered = vec4(0.0);
     for (int i = 0; i < CONE_STEPS_MAX && t < end; ++i) {
+#if COUNT_CONE_STEPS
+        ++cone_steps;
+#endif
         float height = min(height_at(leaves, t), height_at(reaches, t));
         float width = max(min(widening * t / CONE_FOOTPRINT, height / CLEARANCE_VOXELS), 1.0);
         vec3 p = origin + Direction * t;
@@ -113,7 +126,7 @@ vec4 cone_trace_between(vec3 Pos, vec3 Direction, float ConeAngle, float start_m
             t += max(s.empty_exit + CONE_SKIP_EPSILON, width * CONE_STEP);
             continue;
         }
-        float advance = width * (s.value.a < CONE_CLEAR ? CONE_STEP_CLEAR : CONE_STEP);
+        float advance = CONE_STEP_SHARE * width * (s.value.a < CONE_CLEAR ? CONE_STEP_CLEAR : CONE_STEP);
         t += advance;
         if (s.value.a <= 0.0) continue;
         float hidden = 1.0 - exp(-voxel_extinction(s.value.a) * advance * exp2(-lod));
