@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from elemental.gpu.formats import D24S8, RGB10_A2, RGBA8, RGBA16F
-from elemental.passes.scene_gpu import Culling
+from elemental.passes.culling import Culling
 from elemental.scene.model import Texture, TextureSlot
 from gpu.rig import IDENTITY, MakeRig, Rig, at, camera, material, mesh, read, scene, vector
 from shapes import box, quad, sphere

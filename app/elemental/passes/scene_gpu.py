@@ -1,4 +1,4 @@
-"""The scene's meshes, materials and textures on the device, and how to draw them."""
+"""The scene's meshes and materials on the device: drawn, and moved by poses."""
 
 from __future__ import annotations
 
@@ -9,10 +9,13 @@ import numpy as np
 
 from elemental.gpu.device import Device
 from elemental.gpu.encode import Encoder
-from elemental.gpu.formats import RGBA8, SRGB8_A8
-from elemental.gpu.refs import Sampled
-from elemental.gpu.resources import Buffer, Texture, VertexInput, mip_count
+from elemental.gpu.graph import Graph
+from elemental.gpu.resources import Buffer, VertexInput
 from elemental.passes import scene_pack
+from elemental.passes.culling import Culling
+from elemental.passes.instance_table import Change, InstanceTable
+from elemental.passes.material_textures import MaterialTextures
+from elemental.passes.scene_deform import Deformer, bending
 from elemental.passes.scene_pack import (
     ALL_SLOTS,
     BLEND,
@@ -24,76 +27,148 @@ from elemental.passes.scene_pack import (
 )
 from elemental.passes.triangle_lists import TriangleLists
 from elemental.scene.area_lights import AreaLight
-from elemental.scene.model import AlphaMode, Scene
-from elemental.scene.model import Texture as Image
+from elemental.scene.evaluate import Pose
+from elemental.scene.model import AlphaMode, Material, Scene
 
-SRGB_SLOTS = frozenset({"base_color", "emissive"})
 SURFACE_NAMES = scene_pack.SURFACE_VERTEX.names or ()
+INSTANCE_FORMAT = "16f 16f 4u 64x/i"
 INSTANCE_NAMES = ("a_world_from_local", "a_normal_from_local", "a_instance_words")
 """Members of struct Instance as attributes; the last holds its four words."""
-FLAT_NORMAL = bytes((128, 128, 255, 255))
-WHITE = bytes((255, 255, 255, 255))
-ANISOTROPY = 4.0
-"""Samples along the longer axis of a texture lookup's footprint. Software drivers go without: they
-take twice as long for a textured G-buffer with it."""
 
 
 class GpuScene:
-    """A scene's geometry, uploaded once: merged vertex and index buffers drawn indirectly.
+    """A scene's geometry: merged vertex and index buffers drawn indirectly.
 
-    `instances` and `materials` are the storage blocks of glsl/shared. `version` counts the changes
-    of geometry that cached shadow maps follow. `bounds` is the scene's (min, max) in m. `lists` is
-    what voxelization draws; what `area_lights` emit is left out of the voxels.
+    `instances` and `materials` are the storage blocks of glsl/shared. `bounds` is the box in m
+    (min, max) that the scene never leaves. `lists` is what voxelization draws; what `area_lights`
+    emit is left out of the voxels.
+
+    Once a frame `update` takes over a pose, and `deform` bends what it bends. `changes` is then
+    what became of the instances since the frame before, and `version` counts the frames with any.
+    Instances are `dynamic` (N,) bool where a pose may ever change them. Nothing of this is read
+    back from the GPU.
     """
 
     def __init__(self, device: Device, scene: Scene, area_lights: Sequence[AreaLight] = ()) -> None:
         self.version = 0
+        self.changes: list[Change] = []
         self.bounds = scene.bounds()
         self.triangle_count = scene.triangle_count
-        geometry = scene_pack.pack_geometry(scene)
-        commands, numbers, self._batches = scene_pack.pack_draws(scene, geometry)
-        self._buffers: list[Buffer] = []
+        self.dynamic = np.array([instance.dynamic for instance in scene.instances], np.bool_)
+        self._device, self._scene = device, scene
+        self._table = InstanceTable(scene, area_lights)
+        self._material_changes: dict[int, Change] = {}
+        self._geometry = geometry = scene_pack.pack_geometry(scene, bending(scene))
+        self.instances = self._upload("instances", self._table.rows, dynamic=True)
+        self.materials = self._upload("materials", scene_pack.pack_materials(scene), dynamic=True)
+        self.indices = self._upload("indices", geometry.indices)
+        self.positions = self._upload("positions", geometry.positions)
+        self._surface = self._upload("surface", geometry.surface)
+        self._buffers = [
+            self.instances,
+            self.materials,
+            self.indices,
+            self.positions,
+            self._surface,
+        ]
+        self._deformer: Deformer | None = None
+        if bending(scene):
+            self._deformer = Deformer(device, scene, geometry, self.positions, self._surface)
+        self._textures = MaterialTextures(device, scene)
+        self._arrange()
 
-        def upload(name: str, values: Array) -> Buffer:
-            self._buffers.append(device.buffer(f"scene.{name}", values, category="meshes"))
-            return self._buffers[-1]
+    def _upload(self, name: str, values: Array, dynamic: bool = False) -> Buffer:
+        return self._device.buffer(f"scene.{name}", values, category="meshes", dynamic=dynamic)
 
-        self.instances = upload("instances", scene_pack.pack_instances(scene, area_lights))
-        self.materials = upload("materials", scene_pack.pack_materials(scene))
-        self.indices = indices = upload("indices", geometry.indices)
-        self.positions = upload("positions", geometry.positions)
-        position = (self.positions, "3f", ("a_position",))
-        surface = (upload("surface", geometry.surface), "3f 4f 2f 2f 4f1", SURFACE_NAMES)
-
-        def place(name: str) -> Placed:
-            order = upload(f"order.{name}", numbers)
-            instance = (order, "1u/i", ("a_instance",))
-            return Placed(
-                upload(f"draws.{name}", commands),
-                order,
-                device.vertex_input([position, surface, instance], indices),
-                device.vertex_input([position, instance], indices),
-            )
-
-        self._place = place
-        self._everything = place("everything")
+    def _arrange(self) -> None:
+        """Sort the instances into batches, with all that hangs on their order."""
+        commands, numbers, self._batches = scene_pack.pack_draws(self._scene, self._geometry)
+        self._textures.upload(self._batches)
+        table = self._table
+        self._culling = Culling(commands, numbers, table.low, table.high, table.visible)
+        self._commands, self._order = commands, numbers
+        self._everything = self._place("everything")
         self._seen_by: dict[str, Placed] = {}
-        self.lists = TriangleLists(device, commands, numbers, indices)
-        placement = (self.instances, "16f 16f 4u/i", INSTANCE_NAMES)
-        self._listed = device.vertex_input([position, surface, placement], self.lists.indices)
-        self._culling = Culling(commands, numbers, *scene_pack.instance_boxes(scene))
-        self._textures = MaterialTextures(device, scene, self._batches)
+        self.lists = TriangleLists(self._device, commands, numbers, self.indices)
+        placement = (self.instances, INSTANCE_FORMAT, INSTANCE_NAMES)
+        attributes = [*self._attributes(), placement]
+        self._listed = self._device.vertex_input(attributes, self.lists.indices)
+
+    def _attributes(self) -> list[tuple[Buffer, str, Sequence[str]]]:
+        surface = (self._surface, "3f 4f 2f 2f 4f1", SURFACE_NAMES)
+        return [(self.positions, "3f", ("a_position",)), surface]
+
+    def _place(self, name: str) -> Placed:
+        order = self._upload(f"order.{name}", self._order, dynamic=True)
+        position, surface = self._attributes()
+        instance = (order, "1u/i", ("a_instance",))
+        return Placed(
+            self._upload(f"draws.{name}", self._commands, dynamic=True),
+            order,
+            self._device.vertex_input([position, surface, instance], self.indices),
+            self._device.vertex_input([position, instance], self.indices),
+        )
+
+    def _release_order(self) -> None:
+        for placed in (self._everything, *self._seen_by.values()):
+            placed.release()
+        self._listed.release()
+        self.lists.release()
 
     def release(self) -> None:
         """Free everything."""
-        for placed in (self._everything, *self._seen_by.values()):
-            placed.vertices.release()
-            placed.positions_only.release()
-        self._listed.release()
-        self.lists.release()
+        self._release_order()
         self._textures.release()
+        if self._deformer is not None:
+            self._deformer.release()
         for buffer in self._buffers:
             buffer.release()
+
+    def update(self, pose: Pose | None) -> None:
+        """Begin a frame: take over its pose (None: nothing moved) and list the `changes`.
+
+        Uploads what differs, the rows of the changed instances at once.
+        """
+        self.changes = list(self._material_changes.values())
+        self._material_changes.clear()
+        if pose is not None and self.dynamic.any():
+            bent = self._deformer.follow(pose) if self._deformer is not None else []
+            moved, rows = self._table.follow(pose, bent)
+            if rows:
+                table = self._table.rows[rows.start : rows.stop]
+                self.instances.write(table, rows.start * table.itemsize)
+            if moved:
+                self._culling.moved()
+                elsewhere = {change.instance for change in moved}
+                stood = [change for change in self.changes if change.instance not in elsewhere]
+                self.changes = [*stood, *moved]
+        if self.changes:
+            self.version += 1
+
+    def deform(self, g: Graph) -> None:
+        """Add the pass that brings bent meshes up to the last pose, if any has to be."""
+        if self._deformer is not None:
+            self._deformer.run(g)
+
+    def set_material(self, index: int, material: Material) -> None:
+        """Replace a material, here and in the scene; its users are among the next `changes`."""
+        before = self._scene.materials[index]
+        self._scene.materials[index] = material
+        packed = scene_pack.pack_materials(self._scene)[index]
+        self.materials.write(packed.tobytes(), index * packed.nbytes)
+        casts = scene_pack.opacity(before) != scene_pack.opacity(material)
+        for change in self._table.material_changes(self._scene, index, casts):
+            self._material_changes[change.instance] = change
+        if scene_pack.draw_state(before) != scene_pack.draw_state(material):
+            self._release_order()
+            self._arrange()
+
+    def set_area_lights(self, area_lights: Sequence[AreaLight]) -> None:
+        """Replace the area lights; instances that become one, or cease to, are among `changes`."""
+        for change in self._table.set_area_lights(area_lights):
+            self._material_changes.setdefault(change.instance, change)
+            row = self._table.rows[change.instance]
+            self.instances.write(row.tobytes(), change.instance * row.nbytes)
 
     def look(self, viewer: str, clip_from_world: Array) -> None:
         """Leave out of the draws `seen_by` this viewer what its (4, 4) matrix can't see."""
@@ -109,14 +184,14 @@ class GpuScene:
         return self._everything if viewer is None else self._seen_by[viewer]
 
     def batches(
-        self, alpha_modes: Collection[AlphaMode], textured: bool | None = None
+        self, alpha_modes: Collection[AlphaMode], dynamic: bool | None = None
     ) -> list[Batch]:
-        """The batches of these alpha modes; `textured` keeps those with, or without, textures."""
-        wanted = (True, False) if textured is None else (textured,)
+        """The batches of these alpha modes; `dynamic` keeps those that can, or can't, move."""
+        wanted = (True, False) if dynamic is None else (dynamic,)
         return [
             batch
             for batch in self._batches
-            if batch.alpha_mode in alpha_modes and (batch.texture_mask != 0) in wanted
+            if batch.alpha_mode in alpha_modes and batch.dynamic in wanted
         ]
 
     def back_to_front(self, eye: Array) -> list[Batch]:
@@ -178,12 +253,16 @@ class GpuScene:
         encoder: Encoder,
         alpha_modes: Collection[AlphaMode] = OPAQUE,
         *,
+        dynamic: bool | None = None,
         seen_by: str | None = None,
     ) -> None:
-        """Draw with the attributes a_position and a_instance only, culling left as it is."""
+        """Draw with the attributes a_position and a_instance only, culling left as it is.
+
+        `dynamic` as for `batches`.
+        """
         placed = self._placed(seen_by)
         for mode in CATEGORIES:
-            batches = self.batches((mode,)) if mode in alpha_modes else []
+            batches = self.batches((mode,), dynamic) if mode in alpha_modes else []
             if batches:
                 count, first = sum(batch.count for batch in batches), batches[0].first
                 encoder.draw_indirect(placed.positions_only, placed.commands, count, first)
@@ -198,89 +277,9 @@ class Placed:
     vertices: VertexInput
     positions_only: VertexInput
 
-
-class Culling:
-    """Which instances a viewer sees, as draw commands with fewer instances each.
-
-    commands (D,) DRAW_COMMAND, order (N,) instance numbers in draw order, low and high (N, 3) world
-    boxes by instance number.
-    """
-
-    def __init__(self, commands: Array, order: Array, low: Array, high: Array) -> None:
-        self._commands, self._order = commands, order
-        self._segment = np.repeat(np.arange(len(commands)), commands["instance_count"])
-        self.centers = (low + high) / 2
-        self._half = (high - low) / 2
-        self._looked: dict[str, bytes] = {}
-
-    def look(self, viewer: str, clip_from_world: Array) -> tuple[Array, Array] | None:
-        """(commands, order) by this matrix, None if the viewer's last look was by the same."""
-        key = clip_from_world.tobytes()
-        if key == self._looked.get(viewer):
-            return None
-        self._looked[viewer] = key
-        seen = self.visible(clip_from_world)[self._order]
-        commands = self._commands.copy()
-        commands["instance_count"] = np.add.reduceat(seen, commands["base_instance"], dtype="<u4")
-        return commands, self._order[np.lexsort((~seen, self._segment))]
-
-    def instances_of(self, batch: Batch) -> range:
-        """Where the batch's instances stand in draw order."""
-        drawn = self._commands[batch.first : batch.first + batch.count]
-        first = int(drawn["base_instance"][0])
-        return range(first, first + int(drawn["instance_count"].sum()))
-
-    def visible(self, clip_from_world: Array) -> Array:
-        """(N,) bool: instances whose box is not wholly outside one of the frustum's planes."""
-        m = clip_from_world.astype(np.float64)
-        planes = np.concatenate([m[3] + m[:3], m[3] - m[:3]])
-        reach = self._half @ np.abs(planes[:, :3]).T
-        distance = self.centers @ planes[:, :3].T + planes[:, 3]
-        return np.asarray(np.all(distance + reach >= 0.0, axis=1))
-
-
-class MaterialTextures:
-    """The textures that a scene's materials name, each uploaded once for each transfer curve."""
-
-    def __init__(self, device: Device, scene: Scene, batches: Collection[Batch]) -> None:
-        anisotropy = 1.0 if device.info.software else ANISOTROPY
-        self._sampled: dict[tuple[bool, int], Sampled] = {}
-        self._white = Sampled(_pixel(device, "white", WHITE))
-        self._flat = Sampled(_pixel(device, "flat normal", FLAT_NORMAL))
-        for batch in batches:
-            for slot, number in zip(SLOTS, batch.textures, strict=True):
-                key = (slot in SRGB_SLOTS, number)
-                if number >= 0 and key not in self._sampled:
-                    self._sampled[key] = _upload(device, scene.textures[number], *key, anisotropy)
-
     def release(self) -> None:
-        """Free the textures."""
-        for sampled in (self._white, self._flat, *self._sampled.values()):
-            assert isinstance(sampled.texture, Texture)
-            sampled.texture.release()
-
-    def sampled(self, slot: str, number: int) -> Sampled:
-        """The texture to bind for a slot; -1 gives the neutral one."""
-        if number < 0:
-            return self._flat if slot == "normal" else self._white
-        return self._sampled[slot in SRGB_SLOTS, number]
-
-
-def _upload(device: Device, image: Image, srgb: bool, number: int, anisotropy: float) -> Sampled:
-    height, width = image.pixels.shape[:2]
-    texture = device.texture(
-        f"material.{number}.{image.name}",
-        (width, height),
-        SRGB8_A8 if srgb else RGBA8,
-        mips=1 if image.nearest else mip_count((width, height)),
-        data=image.pixels,
-        category="textures",
-    )
-    wrap = (image.wrap_u, image.wrap_v)
-    if image.nearest:
-        return Sampled(texture, filter="nearest", wrap=wrap)
-    return Sampled(texture, filter="trilinear", wrap=wrap, anisotropy=anisotropy)
-
-
-def _pixel(device: Device, name: str, texel: bytes) -> Texture:
-    return device.texture(f"material.{name}", (1, 1), RGBA8, data=texel, category="textures")
+        """Free them."""
+        self.vertices.release()
+        self.positions_only.release()
+        self.commands.release()
+        self.order.release()

@@ -60,7 +60,8 @@ class Geometry:
     """Every mesh of a scene in one set of arrays.
 
     positions (V, 3) float32, surface (V,) SURFACE_VERTEX, indices (I,) uint32 local to a mesh,
-    first_vertex and first_index (M,) by mesh.
+    first_vertex and first_index (M,) by mesh; placed_vertex (N,) by instance: its mesh's first
+    vertex, or that of its own copy where it bends.
     """
 
     positions: Array
@@ -68,6 +69,7 @@ class Geometry:
     indices: Array
     first_vertex: Array
     first_index: Array
+    placed_vertex: Array
 
 
 @dataclass(frozen=True)
@@ -77,6 +79,8 @@ class Batch:
     first: int
     count: int
     alpha_mode: AlphaMode
+    dynamic: bool
+    """Whether a pose may move its instances; no pose moves those of other batches."""
     double_sided: bool
     textures: tuple[int, ...]
     """Texture numbers by SLOTS, -1 where a slot is empty."""
@@ -91,22 +95,27 @@ class Batch:
         return slot_mask(texture >= 0 for texture in self.textures)
 
 
-def pack_geometry(scene: Scene) -> Geometry:
-    """Merge the scene's meshes."""
+def pack_geometry(scene: Scene, bending: Sequence[int] = ()) -> Geometry:
+    """Merge the scene's meshes, with a copy for each of the instances in `bending`."""
     meshes = scene.meshes
-    vertex_counts = np.array([0, *(len(m.positions) for m in meshes)])
+    mesh_of = [instance.mesh for instance in scene.instances]
+    copied = meshes + [meshes[mesh_of[number]] for number in bending]
+    first = np.cumsum([0, *(len(m.positions) for m in copied)])
     index_counts = np.array([0, *(len(m.indices) for m in meshes)])
-    surface = np.empty(int(vertex_counts.sum()), SURFACE_VERTEX)
+    surface = np.empty(int(first[-1]), SURFACE_VERTEX)
     fields = {"a_normal": "normals", "a_tangent": "tangents", "a_uv0": "uv0", "a_uv1": "uv1",
               "a_color": "colors"}  # fmt: skip
     for attribute, name in fields.items():
-        surface[attribute] = np.concatenate([getattr(m, name) for m in meshes])
+        surface[attribute] = np.concatenate([getattr(m, name) for m in copied])
+    placed = first[mesh_of]
+    placed[list(bending)] = first[len(meshes) : -1]
     return Geometry(
-        positions=np.concatenate([m.positions for m in meshes]).astype("<f4"),
+        positions=np.concatenate([m.positions for m in copied]).astype("<f4"),
         surface=surface,
         indices=np.concatenate([m.indices for m in meshes]).astype("<u4"),
-        first_vertex=np.cumsum(vertex_counts)[:-1],
+        first_vertex=first[: len(meshes)],
         first_index=np.cumsum(index_counts)[:-1],
+        placed_vertex=placed,
     )
 
 
@@ -164,8 +173,6 @@ def slot_mask(held: Iterable[bool]) -> int:
 
 def pack_instances(scene: Scene, area_lights: Sequence[AreaLight] = ()) -> Array:
     """(instances,) of the GLSL struct Instance, in the scene's own order."""
-    flags = np.zeros(len(scene.instances), np.uint32)
-    flags[[light.instance for light in area_lights]] = layouts().constant("INSTANCE_AREA_LIGHT")
     matrices = np.array([instance.world_from_local for instance in scene.instances])
     normals = np.tile(np.eye(4, dtype=np.float32), (len(matrices), 1, 1))
     normals[:, :3, :3] = [transforms.normal_matrix(matrix) for matrix in matrices]
@@ -174,30 +181,39 @@ def pack_instances(scene: Scene, area_lights: Sequence[AreaLight] = ()) -> Array
         len(matrices),
         world_from_local=matrices,
         normal_from_local=normals,
+        prev_world_from_local=matrices,
         material=[scene.meshes[instance.mesh].material for instance in scene.instances],
-        flags=flags,
+        flags=area_light_flags(len(matrices), area_lights),
     )
+
+
+def area_light_flags(instances: int, area_lights: Sequence[AreaLight]) -> Array:
+    """(instances,) uint32: Instance.flags."""
+    flags = np.zeros(instances, np.uint32)
+    flags[[light.instance for light in area_lights]] = layouts().constant("INSTANCE_AREA_LIGHT")
+    return flags
 
 
 def pack_draws(scene: Scene, geometry: Geometry) -> tuple[Array, Array, list[Batch]]:
     """(commands (D,) DRAW_COMMAND, instance numbers (N,) uint32 in draw order, batches).
 
-    Commands of one batch, and batches of one alpha mode, lie together; instances of one mesh share
-    a command, but a blended one is a batch of its own, to be sorted.
+    Commands of one batch, batches of one alpha mode, and among those the static and the dynamic
+    ones lie together; instances of one mesh share a command unless they bend, but a blended one is
+    a batch of its own, to be sorted.
     """
     numbers = range(len(scene.instances))
     mesh_of = [instance.mesh for instance in scene.instances]
+    drawn_as = list(zip(mesh_of, geometry.placed_vertex.tolist(), strict=True))
     keys = [_batch_key(scene, number) for number in numbers]
-    order = sorted(numbers, key=lambda number: (keys[number], mesh_of[number], number))
+    order = sorted(numbers, key=lambda number: (keys[number], drawn_as[number], number))
     commands: list[tuple[int, int, int, int, int]] = []
     batches: list[Batch] = []
     drawn = 0
     for key, batch in groupby(order, key=keys.__getitem__):
         first = len(commands)
-        for mesh, same in groupby(batch, key=mesh_of.__getitem__):
+        for (mesh, vertex), same in groupby(batch, key=drawn_as.__getitem__):
             size, count = len(scene.meshes[mesh].indices), len(list(same))
-            start = (int(geometry.first_index[mesh]), int(geometry.first_vertex[mesh]))
-            commands.append((size, count, *start, drawn))
+            commands.append((size, count, int(geometry.first_index[mesh]), vertex, drawn))
             drawn += count
         batches.append(Batch(first, len(commands) - first, CATEGORIES[key[0]], *key[1:]))
     return np.array(commands, DRAW_COMMAND), np.array(order, "<u4"), batches
@@ -218,17 +234,29 @@ def instance_boxes(scene: Scene) -> tuple[Array, Array]:
     return np.array(low), np.array(high)
 
 
-def _batch_key(scene: Scene, number: int) -> tuple[int, bool, tuple[int, ...], bool, int]:
-    """(place in CATEGORIES, then Batch's fields from `double_sided` on)."""
-    material = scene.materials[scene.meshes[scene.instances[number].mesh].material]
+def _batch_key(scene: Scene, number: int) -> tuple[int, bool, bool, tuple[int, ...], bool, int]:
+    """(place in CATEGORIES, dynamic, then Batch's fields from `double_sided` to `instance`)."""
+    instance = scene.instances[number]
+    material = scene.materials[scene.meshes[instance.mesh].material]
+    category, double_sided, textures, transforms_uv = draw_state(material)
+    alone = number if material.alpha_mode == "blend" else -1
+    return category, instance.dynamic, double_sided, textures, transforms_uv, alone
+
+
+def draw_state(material: Material) -> tuple[int, bool, tuple[int, ...], bool]:
+    """What a material asks of the draws that use it.
+
+    (place in CATEGORIES, double-sided, texture numbers by SLOTS, whether they have uv transforms).
+    """
     slots = texture_slots(material)
     textures = tuple(-1 if s is None else s.texture for s in slots)
     transforms_uv = any(s is not None and _transforms_uv(s) for s in slots)
-    alone = number if material.alpha_mode == "blend" else -1
-    return (
-        CATEGORIES.index(material.alpha_mode),
-        material.double_sided,
-        textures,
-        transforms_uv,
-        alone,
-    )
+    category = CATEGORIES.index(material.alpha_mode)
+    return category, material.double_sided, textures, transforms_uv
+
+
+def opacity(material: Material) -> tuple[object, ...]:
+    """What decides where a material lets light through."""
+    slot = material.base_color_texture
+    texture = None if slot is None else (slot.texture, slot.uv_set, slot.uv_from_uv.tobytes())
+    return material.alpha_mode, material.alpha_cutoff, float(material.base_color[3]), texture

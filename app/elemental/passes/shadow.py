@@ -1,4 +1,4 @@
-"""Shadow maps of every light, drawn anew only where a view or the geometry changed.
+"""Shadow maps of every light, drawn anew only where a view or what it sees changed.
 
 A directional light has one map of the whole scene, which lights voxels whatever the camera does,
 and cascades for what the camera sees; a spot light has one map, a point light six.
@@ -19,6 +19,7 @@ from elemental.gpu.refs import Layer, Ref, Sampled
 from elemental.gpu.resources import Buffer, Texture
 from elemental.gpu.shaders import Raster
 from elemental.gpu.state import RasterState
+from elemental.passes.culling import in_frustum
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.scene_pack import BASE_COLOR_SLOT, MASKED, Array
 from elemental.passes.shadow_plan import ShadowPlan, ShadowSettings, plan_shadows
@@ -47,6 +48,7 @@ class ShadowMaps:
         self._buffers: dict[str, Buffer] = {}
         self._uploaded: dict[str, bytes] = {}
         self._drawn: dict[int, bytes] = {}
+        self._drawn_version = 0
 
     def reads(self) -> dict[str, Ref]:
         """What a shader that includes lib/shadow.glsl reads; valid after `update_shadows`."""
@@ -67,21 +69,42 @@ class ShadowMaps:
         for held in (self._buffers, self._uploaded, self._drawn):
             held.clear()
 
-    def place(self, plan: ShadowPlan, version: int) -> list[int]:
+    def place(self, plan: ShadowPlan, scene: GpuScene) -> list[int]:
         """Upload a plan. Returns the numbers of the views whose map has to be drawn anew."""
         self._allocate(plan.layers)
         self._upload("Lights", plan.lights)
         self._upload("ShadowViews", plan.views)
         light_fields = [name for name in plan.lights.dtype.names or () if "cascade" not in name]
         fixed = plan.views[: plan.fixed]
-        self.light_key = (version, plan.lights[light_fields].tobytes(), fixed.tobytes())
+        self.light_key = (scene.version, plan.lights[light_fields].tobytes(), fixed.tobytes())
+        self._forget_changed(plan, scene)
         stale = []
         for number, view in enumerate(plan.views):
-            content = view.tobytes() + version.to_bytes(8, "little")
+            content = view.tobytes()
             if self._drawn.get(number) != content:
                 self._drawn[number] = content
                 stale.append(number)
         return stale
+
+    def _forget_changed(self, plan: ShadowPlan, scene: GpuScene) -> None:
+        """Forget the maps that show what changed since they were drawn."""
+        drawn, self._drawn_version = self._drawn_version, scene.version
+        if scene.version == drawn:
+            return
+        if scene.version != drawn + 1:
+            self._drawn.clear()
+            return
+        casters = [change for change in scene.changes if change.casts]
+        boxes = [box for change in casters for box in (change.before, change.after) if box]
+        if not boxes:
+            return
+        low, high = (np.array(corners) for corners in zip(*boxes, strict=True))
+        for number in list(self._drawn):
+            if number < len(plan.views):
+                matrix = plan.views[number]["clip_from_world"].T
+                if not in_frustum(matrix, low, high).any():
+                    continue
+            del self._drawn[number]
 
     def target(self, number: int) -> Layer:
         """The depth layer of one view."""
@@ -125,7 +148,7 @@ def update_shadows(
 ) -> ShadowMaps:
     """Bring every map up to date and return `maps`, ready to be read. size: px of the picture."""
     plan = plan_shadows(lights, scene.bounds, camera, size, maps.settings)
-    for number in maps.place(plan, scene.version):
+    for number in maps.place(plan, scene):
         _draw_view(g, maps, scene, plan, number)
     return maps
 

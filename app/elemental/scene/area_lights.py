@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
 
+from elemental.scene.evaluate import Pose
 from elemental.scene.model import FloatArray, Mesh, Scene
 
 FACES_A_MESH_MAX = 9
@@ -28,7 +29,8 @@ class AreaLight:
 
     corner, edge_u, edge_v (3,) float32 m, world space: points are corner + s edge_u + t edge_v with
     s, t in 0..1, and cross(edge_u, edge_v) points to its front; radiance (3,) float32 nit;
-    `instance` is the index of what it belongs to in Scene.instances.
+    `instance` is the index of what it belongs to in Scene.instances; `face` (3, 3) float64 are
+    corner and edges in that instance's own space.
     """
 
     instance: int
@@ -37,6 +39,7 @@ class AreaLight:
     edge_v: FloatArray
     radiance: FloatArray
     both_sides: bool
+    face: npt.NDArray[np.float64] = field(default_factory=lambda: np.eye(3), repr=False)
 
     @property
     def flux(self) -> float:
@@ -59,9 +62,9 @@ def area_lights(scene: Scene) -> list[AreaLight]:
     lamps = []
     for number, instance in enumerate(scene.instances):
         faces = faces_of.get(instance.mesh)
-        if faces is None:
+        if faces is None or instance.skin >= 0 or instance.weights is not None:
             continue
-        lamp = [_placed(scene, number, face) for face in faces]
+        lamp = [_placed(scene, number, face, instance.world_from_local) for face in faces]
         flux = sum(face.flux for face in lamp)
         if flux > least:
             lamps.append((flux, lamp))
@@ -71,6 +74,22 @@ def area_lights(scene: Scene) -> list[AreaLight]:
         if len(chosen) + len(lamp) <= FACES_MAX:
             chosen += lamp
     return chosen
+
+
+def followed(scene: Scene, lights: list[AreaLight], pose: Pose) -> list[AreaLight]:
+    """`area_lights` where a pose has their instances; those of hidden ones are dark."""
+    row = {int(number): k for k, number in enumerate(pose.instances)}
+    moved = []
+    for light in lights:
+        k = row.get(light.instance)
+        if k is None:
+            moved.append(light)
+        elif pose.visible[k]:
+            world = pose.world_from_local[k]
+            moved.append(_placed(scene, light.instance, light.face, world))
+        else:
+            moved.append(replace(light, radiance=np.zeros(3, np.float32)))
+    return moved
 
 
 def parallelograms(mesh: Mesh) -> npt.NDArray[np.float64] | None:
@@ -113,10 +132,11 @@ def _emits_evenly(scene: Scene, mesh: Mesh) -> bool:
     return plain and material.emits and not material.unlit
 
 
-def _placed(scene: Scene, number: int, face: npt.NDArray[np.float64]) -> AreaLight:
-    instance = scene.instances[number]
-    material = scene.materials[scene.meshes[instance.mesh].material]
-    matrix = instance.world_from_local.astype(np.float64)
+def _placed(
+    scene: Scene, number: int, face: npt.NDArray[np.float64], world_from_local: FloatArray
+) -> AreaLight:
+    material = scene.materials[scene.meshes[scene.instances[number].mesh].material]
+    matrix = world_from_local.astype(np.float64)
     linear = matrix[:3, :3]
     corner = linear @ face[0] + matrix[:3, 3]
     edges = face[1:] @ linear.T
@@ -127,6 +147,7 @@ def _placed(scene: Scene, number: int, face: npt.NDArray[np.float64]) -> AreaLig
         edge_v=edges[1].astype(np.float32),
         radiance=material.emissive.astype(np.float32),
         both_sides=material.double_sided,
+        face=face,
     )
 
 

@@ -70,6 +70,7 @@ def count(device: Device, scene: GpuScene, grid: Grid, area_m2: float) -> Counts
         unbounded = Capacity(fragments, UNBOUNDED, UNBOUNDED, UNBOUNDED, UNBOUNDED // 2)
         survey = Survey(device, grid, unbounded, 0.0)
         g = device.begin_frame()
+        scene.deform(g)
         find_nodes(g, survey, voxelize(g, scene, survey))
         g.execute()
         counts = Counts.from_state(survey.state.read().tobytes())

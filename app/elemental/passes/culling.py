@@ -1,0 +1,68 @@
+"""What a viewer sees of a scene, and the draws of that. No GL here."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from elemental.passes.scene_pack import Array, Batch
+
+
+class Culling:
+    """Which instances a viewer sees, as draw commands with fewer instances each.
+
+    commands (D,) DRAW_COMMAND, order (N,) instance numbers in draw order; low and high (N, 3) world
+    boxes by instance number and visible (N,) bool, which their owner changes and then says so.
+    """
+
+    def __init__(
+        self, commands: Array, order: Array, low: Array, high: Array, visible: Array
+    ) -> None:
+        self._commands, self._order = commands, order
+        self._segment = np.repeat(np.arange(len(commands)), commands["instance_count"])
+        self._low, self._high, self._visible = low, high, visible
+        self._revision = 0
+        self._looked: dict[str, tuple[bytes, int]] = {}
+        self._seen: dict[str, bytes] = {}
+
+    @property
+    def centers(self) -> Array:
+        """(N, 3) of the boxes."""
+        return (self._low + self._high) / 2
+
+    def moved(self) -> None:
+        """Some boxes changed."""
+        self._revision += 1
+
+    def look(self, viewer: str, clip_from_world: Array) -> tuple[Array, Array] | None:
+        """(commands, order) by this matrix, None if the viewer still sees what it saw last."""
+        key = clip_from_world.tobytes(), self._revision
+        if key == self._looked.get(viewer):
+            return None
+        self._looked[viewer] = key
+        seen = self.visible(clip_from_world)[self._order]
+        if self._seen.get(viewer) == seen.tobytes():
+            return None
+        self._seen[viewer] = seen.tobytes()
+        commands = self._commands.copy()
+        commands["instance_count"] = np.add.reduceat(seen, commands["base_instance"], dtype="<u4")
+        return commands, self._order[np.lexsort((~seen, self._segment))]
+
+    def instances_of(self, batch: Batch) -> range:
+        """Where the batch's instances stand in draw order."""
+        drawn = self._commands[batch.first : batch.first + batch.count]
+        first = int(drawn["base_instance"][0])
+        return range(first, first + int(drawn["instance_count"].sum()))
+
+    def visible(self, clip_from_world: Array) -> Array:
+        """(N,) bool: visible instances whose box is not wholly outside a plane of the frustum."""
+        return in_frustum(clip_from_world, self._low, self._high) & self._visible
+
+
+def in_frustum(clip_from_world: Array, low: Array, high: Array) -> Array:
+    """(N,) bool: which boxes low, high (N, 3) are not wholly outside one of the six planes."""
+    m = clip_from_world.astype(np.float64)
+    planes = np.concatenate([m[3] + m[:3], m[3] - m[:3]])
+    center, half = (low.astype(np.float64) + high) / 2, (high.astype(np.float64) - low) / 2
+    reach = half @ np.abs(planes[:, :3]).T
+    distance = center @ planes[:, :3].T + planes[:, 3]
+    return np.asarray(np.all(distance + reach >= 0.0, axis=1))
