@@ -21,7 +21,7 @@ from elemental.passes.camera_view import pack_view
 from elemental.passes.cone_trace.area_lights import trace_area_lights
 from elemental.passes.cone_trace.diffuse import combine_diffuse, trace_diffuse
 from elemental.passes.cone_trace.interleave import SUB_IMAGES
-from elemental.passes.cone_trace.specular import LIST_HEADER_BYTES, trace_specular
+from elemental.passes.cone_trace.specular import SpecularCounters, trace_specular
 from elemental.passes.forward import draw_translucent
 from elemental.passes.gbuffer import GBuffer, draw_gbuffer
 from elemental.passes.post.fxaa import fxaa
@@ -50,12 +50,14 @@ VIEWS: Mapping[str, str] = {
     **LIGHT_VIEWS,
     "diffuse_gi": "indirect irradiance / pi, linear",
     "specular_gi": "indirect radiance along the mirrored eye vector, linear",
+    "specular_traced": "specular cones, false colour: interpolated, traced first, traced",
     "voxels": "the octree's voxels at the level of voxels.level, linear",
 }
 """View name -> help."""
 
 LINEAR_VIEWS = frozenset({"scene_color", "diffuse_gi", "specular_gi", "voxels", *LIGHT_VIEWS})
-OCTREE_VIEWS = frozenset({"diffuse_gi", "specular_gi", "voxels"})
+SPECULAR_VIEWS = frozenset({"specular_gi", "specular_traced"})
+OCTREE_VIEWS = frozenset({"diffuse_gi", "voxels", *SPECULAR_VIEWS})
 
 
 @dataclass
@@ -65,11 +67,14 @@ class Frame:
     image: Texture
     is_linear: bool
     voxels: VoxelLighting | None
+    specular: SpecularCounters
 
     @property
     def counters(self) -> dict[str, int]:
-        """The octree's counts, as far as the GPU has reported: complete after Device.finish."""
-        return {} if self.voxels is None else self.voxels.counters()
+        """What the GPU has reported so far: complete after Device.finish."""
+        if self.voxels is None:
+            return {}
+        return {**self.voxels.counters(), **self.specular.counters()}
 
 
 class Renderer:
@@ -94,6 +99,7 @@ class Renderer:
         self._shadows = ShadowMaps(device, _shadow_settings(settings))
         self._sky = Sky(device)
         self._voxels: VoxelLighting | None = None
+        self._specular = SpecularCounters()
 
     def resize(self, size: tuple[int, int]) -> None:
         """Draw the next frame at ``size``, or smaller where the driver can't."""
@@ -114,7 +120,7 @@ class Renderer:
         g.keep(image)
         g.execute()
         assert image.physical is not None, "a kept handle has a texture once its graph has run"
-        return Frame(image.physical, view in LINEAR_VIEWS, voxels)
+        return Frame(image.physical, view in LINEAR_VIEWS, voxels, self._specular)
 
     def _declare(
         self,
@@ -148,13 +154,26 @@ class Renderer:
             return surface_view(g, view, gb, view_name)
         if view_name in LIGHT_VIEWS:
             return light_view(g, view, gb, shadows, view_name)
-        diffuse_gi = specular_gi = None
+        diffuse_gi = specular = None
         if octree is not None:
-            diffuse_gi, specular_gi = self._indirect(g, view, gb, octree, sky)
-        if view_name == "diffuse_gi" and diffuse_gi is not None:
-            return diffuse_gi
-        if view_name == "specular_gi" and specular_gi is not None:
-            return specular_gi
+            diffuse_gi, broad_gi = self._diffuse(g, view, gb, octree, sky)
+            if view_name == "diffuse_gi":
+                return diffuse_gi
+            if s["gi.specular"] or view_name in SPECULAR_VIEWS:
+                specular = trace_specular(
+                    g,
+                    view,
+                    gb,
+                    octree,
+                    sky,
+                    self._area_block,
+                    broad_gi,
+                    self._specular,
+                    adaptive=s["gi.specular_adaptive"],
+                    show=view_name == "specular_traced",
+                )
+                if view_name in SPECULAR_VIEWS:
+                    return specular.traced or specular.radiance
         scene_color = shade(
             g,
             view,
@@ -162,7 +181,7 @@ class Renderer:
             shadows,
             sky=sky if environment is not None else None,
             diffuse_gi=diffuse_gi,
-            specular_gi=specular_gi if s["gi.specular"] else None,
+            specular_gi=specular.radiance if specular is not None else None,
         )
         scene_color = draw_translucent(
             g, view, gb, self._meshes, shadows, sky=sky, diffuse_gi=diffuse_gi
@@ -172,18 +191,17 @@ class Renderer:
         image = tonemap(g, view, scene_color)
         return fxaa(g, view, image) if s["fxaa.enabled"] else image
 
-    def _indirect(
+    def _diffuse(
         self, g: Graph, view: Block, gb: GBuffer, octree: Octree, sky: Sky
     ) -> tuple[TextureHandle, TextureHandle]:
-        """(irradiance / pi, radiance along the mirrored eye vector)."""
+        """(irradiance / pi, radiance in a broad specular lobe)."""
         split = self.settings["gi.diffuse_cones"] // SUB_IMAGES
         radiance = trace_diffuse(g, view, gb, octree, sky, split)
         block = self._area_block
         area = None
         if self._area_lights:
             area = (trace_area_lights(g, view, gb, octree, block), block)
-        diffuse_gi, broad_gi = combine_diffuse(g, view, gb, radiance, split, area)
-        return diffuse_gi, trace_specular(g, view, gb, octree, sky, block, broad_gi)
+        return combine_diffuse(g, view, gb, radiance, split, area)
 
     def _prepare_voxels(self, view: str) -> VoxelLighting | None:
         """The octree, counted and allocated when it is first needed."""
@@ -218,7 +236,7 @@ class Renderer:
 
 def max_pixels(device: Device) -> int:
     """The largest picture: the list of glossy pixels, a word each, is one storage block."""
-    return (device.storage_limit - LIST_HEADER_BYTES) // 4
+    return device.storage_limit // 4
 
 
 def _shadow_settings(settings: Settings) -> ShadowSettings:

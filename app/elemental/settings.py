@@ -134,6 +134,11 @@ _TABLE = (
         source="[Mittring12]",
     ),
     Setting(
+        "gi.specular_adaptive", "bool", True,
+        "trace a quarter of the glossy pixels first, interpolate where they agree",
+        source="[Mittring12]",
+    ),
+    Setting(
         # 36: nine wide cones lose a third of a small lamp's light to the walls that they touch;
         # 63 cost 1.7 times as much (docs/gi.md).
         "gi.diffuse_cones", "choice", 36,
