@@ -37,8 +37,10 @@ from elemental.passes.voxel.grid import Grid
 from elemental.passes.voxel.lighting import VoxelLighting
 from elemental.passes.voxel.octree import Octree
 from elemental.passes.voxel.view import voxel_view
-from elemental.scene.area_lights import area_lights
-from elemental.scene.model import Camera, Scene
+from elemental.scene.area_lights import AreaLight, area_lights, followed
+from elemental.scene.deform import posed
+from elemental.scene.evaluate import Pose, evaluate
+from elemental.scene.model import Camera, Light, Material, Scene
 from elemental.settings import Settings
 
 MIB = 1 << 20
@@ -93,7 +95,7 @@ class Renderer:
         self.scene = scene
         self.settings = settings
         self.size = size
-        self._area_lights = area_lights(scene) if settings["gi.area_lights"] else []
+        self._area_lights = self._choose_area_lights()
         self._area_block = pack_area_lights(self._area_lights)
         self._meshes = GpuScene(device, scene, self._area_lights)
         self._shadows = ShadowMaps(device, _shadow_settings(settings))
@@ -112,11 +114,49 @@ class Renderer:
         if self._voxels is not None:
             self._voxels.invalidate(what)
 
-    def render(self, camera: Camera, time_s: float, frame: int, view: str = "final") -> Frame:
-        """One frame as seen by ``camera``; ``view`` is one of VIEWS."""
-        voxels = self._prepare_voxels(view)
+    def set_material(self, index: int, material: Material) -> None:
+        """Replace one of the scene's materials from the next frame on."""
+        self._meshes.set_material(index, material)
+        if self._area_lights or material.emits:
+            self._area_lights = self._choose_area_lights()
+            self._area_block = pack_area_lights(self._area_lights)
+            self._meshes.set_area_lights(self._area_lights)
+        brightest = sizing.max_emission(self.scene, self._area_lights)
+        if self._voxels is not None and brightest > self._voxels.octree.max_emission:
+            self._voxels.release()  # made anew for that range
+            self._voxels = None
+
+    def _choose_area_lights(self) -> list[AreaLight]:
+        return area_lights(self.scene) if self.settings["gi.area_lights"] else []
+
+    def _move(self, time_s: float, pose: Pose | None) -> list[Light]:
+        """Bring the scene to its pose at a time, or to the given one. Returns its lights."""
+        if pose is None and self.scene.motion is not None:
+            pose = evaluate(self.scene, time_s)
+        self._meshes.update(pose)
+        if pose is None:
+            return self.scene.lights
+        if self._area_lights:
+            self._area_block = pack_area_lights(followed(self.scene, self._area_lights, pose))
+        return pose.lights
+
+    def render(
+        self,
+        camera: Camera,
+        time_s: float,
+        frame: int,
+        view: str = "final",
+        pose: Pose | None = None,
+    ) -> Frame:
+        """One frame as seen by ``camera``; ``view`` is one of VIEWS.
+
+        What moves is where it is at ``time_s``, or as a ``pose`` says.
+        """
+        lights = self._move(time_s, pose)
+        voxels = self._prepare_voxels(view, time_s)
         g = self.device.begin_frame()
-        image = self._declare(g, camera, time_s, frame, view, voxels)
+        self._meshes.deform(g)
+        image = self._declare(g, camera, lights, time_s, frame, view, voxels)
         g.keep(image)
         g.execute()
         assert image.physical is not None, "a kept handle has a texture once its graph has run"
@@ -126,6 +166,7 @@ class Renderer:
         self,
         g: Graph,
         camera: Camera,
+        lights: list[Light],
         time_s: float,
         frame: int,
         view_name: str,
@@ -140,7 +181,7 @@ class Renderer:
         environment = self.scene.environment if s["sky.enabled"] else None
         sky = self._sky.update(g, environment, s["sky.intensity"])
         shadows = update_shadows(
-            g, self._shadows, self._meshes, self.scene.lights, camera=camera, size=self.size
+            g, self._shadows, self._meshes, lights, camera=camera, size=self.size
         )
         octree: Octree | None = None
         if voxels is not None:
@@ -203,18 +244,19 @@ class Renderer:
             area = (trace_area_lights(g, view, gb, octree, block), block)
         return combine_diffuse(g, view, gb, radiance, split, area)
 
-    def _prepare_voxels(self, view: str) -> VoxelLighting | None:
-        """The octree, counted and allocated when it is first needed."""
+    def _prepare_voxels(self, view: str, time_s: float) -> VoxelLighting | None:
+        """The octree, counted and allocated when it is first needed, for the scene at a time."""
         gathers = self.settings["gi.enabled"] and self.settings["gi.bounces"] > 0
         if not gathers and view not in OCTREE_VIEWS:
             return None
         if self._voxels is None:
             s = self.settings
+            present = posed(self.scene, time_s) if self.scene.motion else self.scene
             self._voxels = VoxelLighting(
                 self.device,
                 self._meshes,
                 Grid.fit(self._meshes.bounds, s["gi.resolution"], self.scene.regions),
-                area_m2=sizing.projected_area(self.scene),
+                area_m2=sizing.projected_area(present),
                 max_emission=sizing.max_emission(self.scene, self._area_lights),
                 budget_bytes=s["gi.memory_budget_mb"] * MIB,
             )

@@ -43,7 +43,7 @@ class VoxelLighting:
         self.scene = scene
         self.budget_bytes = budget_bytes
         if capacity is None:
-            capacity = sizing.capacity_for(sizing.count(device, scene, grid, area_m2), budget_bytes)
+            capacity = self._room_for(sizing.count(device, scene, grid, area_m2))
         self.octree = Octree(device, grid, capacity, max_emission)
         self.counts = NOTHING
         self._built_version: int | None = None
@@ -89,7 +89,12 @@ class VoxelLighting:
             self.invalidate("geometry")
 
     def _wanted(self) -> Capacity:
-        return sizing.capacity_for(self.counts, self.budget_bytes)
+        return self._room_for(self.counts)
+
+    def _room_for(self, counts: Counts) -> Capacity:
+        moves = bool(self.scene.dynamic.any())
+        wanted = sizing.with_slack(counts) if moves else counts
+        return sizing.capacity_for(wanted, self.budget_bytes)
 
     def _grow(self) -> None:
         """Larger pools where the last build had to drop something and the budget allows."""

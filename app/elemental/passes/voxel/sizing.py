@@ -21,6 +21,9 @@ FRAGMENTS_MAX = 65535 * 128
 """Work groups a dimension times FRAGMENT_GROUP: what one indirect dispatch reaches."""
 FRAGMENT_SLACK = 1.1
 """Over the expected count of fragments, whose standard deviation is far smaller."""
+MOTION_SLACK = 1.3
+"""Room for what moves: a turned body covers more voxels than one along the axes [inferred: a cube
+up to sqrt(3) times as many, and most of a scene stands still]."""
 BRICKS_MAX = 1 << 20
 """Bricks that the largest atlas holds, rounded down."""
 
@@ -79,6 +82,22 @@ def count(device: Device, scene: GpuScene, grid: Grid, area_m2: float) -> Counts
         if counts.fragments_dropped == 0 or fragments == FRAGMENTS_MAX:
             return replace(counts, fragments=asked, fragments_dropped=0)
         fragments = min(asked, FRAGMENTS_MAX)
+
+
+def with_slack(counts: Counts) -> Counts:
+    """Counts as of a scene that MOTION_SLACK times as much may have to hold, as things move."""
+
+    def more(count: int) -> int:
+        return int(count * MOTION_SLACK) + 1
+
+    return replace(
+        counts,
+        fragments=more(counts.fragments),
+        tiles=more(counts.tiles),
+        bricks=more(counts.bricks),
+        leaves_asked=more(counts.leaves_asked),
+        interior_asked=more(counts.interior_asked),
+    )
 
 
 def capacity_for(counts: Counts, budget_bytes: int) -> Capacity:
