@@ -1,4 +1,4 @@
-"""``elemental bench``: the same frame over and over, timed pass by pass."""
+"""``elemental bench``: frames from one camera, timed pass by pass."""
 
 from __future__ import annotations
 
@@ -35,13 +35,19 @@ SCHEMA = "elemental.bench/1"
 
 @dataclass(frozen=True)
 class Bench:
-    """The words of one ``elemental bench``; ``size`` in pixels."""
+    """The words of one ``elemental bench``; ``size`` in pixels, ``time`` in s, ``fps`` in 1/s.
+
+    What moves in the scene starts at ``time`` and goes on by 1/``fps`` a frame, the warm-up among
+    them; with 0 it stands.
+    """
 
     scene: str | None
     size: tuple[int, int]
     frames: int
     warmup: int
     rebuild: str
+    time: float
+    fps: float
     assignments: list[str]
     json: Path | None
 
@@ -74,6 +80,8 @@ class BenchReport(TypedDict):
     frames: int
     warmup: int
     rebuild: str
+    time_s: float
+    fps: float
     settings: dict[str, object]
     passes: list[PassSpread]
     frame_wall_ms: Spread
@@ -109,6 +117,11 @@ class Samples:
         ]
 
 
+def time_of(bench: Bench, frame: int) -> float:
+    """Scene time of a frame in s."""
+    return bench.time + (frame / bench.fps if bench.fps > 0.0 else 0.0)
+
+
 def measure(renderer: Renderer, device: Device, camera: Camera, bench: Bench) -> Samples:
     """Render the warm-up, then time ``bench.frames`` frames, each until the GPU is done.
 
@@ -120,7 +133,7 @@ def measure(renderer: Renderer, device: Device, camera: Camera, bench: Bench) ->
         if bench.rebuild != "none":
             renderer.invalidate(bench.rebuild)
         began = time.perf_counter()
-        renderer.render(camera, 0.0, index)
+        renderer.render(camera, time_of(bench, index), index)
         issued = time.perf_counter()
         device.ctx.finish()
         done = time.perf_counter()
@@ -146,8 +159,9 @@ def bench(words: Bench) -> None:
     stage = set_stage(words.scene, words.assignments, Viewpoint(), words.size)
     device = headless_device()
     renderer = Renderer(device, stage.scene, stage.settings, words.size)
-    samples = measure(renderer, device, stage.camera_at(0.0), words)
-    frame = renderer.render(stage.camera_at(0.0), 0.0, words.warmup + words.frames)
+    camera, last = stage.camera_at(words.time), words.warmup + words.frames
+    samples = measure(renderer, device, camera, words)
+    frame = renderer.render(camera, time_of(words, last), last)
     device.finish()
     counters = {name: int(count) for name, count in frame.counters.items()}
     report: BenchReport = {
@@ -159,6 +173,8 @@ def bench(words: Bench) -> None:
         "frames": words.frames,
         "warmup": words.warmup,
         "rebuild": words.rebuild,
+        "time_s": words.time,
+        "fps": words.fps,
         "settings": settings_entry(stage.settings),
         "passes": samples.passes(),
         "frame_wall_ms": spread(samples.frame_wall),

@@ -85,11 +85,11 @@ def _bench(options: argparse.Namespace) -> None:
 
 
 def _list(options: argparse.Namespace) -> None:
-    from elemental.listing import lines  # noqa: PLC0415
+    from elemental.listing import OF_A_SCENE, lines  # noqa: PLC0415
 
-    if options.what == "cameras" and options.scene is None:
-        raise InputError("list cameras", "SCENE", "name a scene")
-    if options.what != "cameras" and options.scene is not None:
+    if options.what in OF_A_SCENE and options.scene is None:
+        raise InputError(f"list {options.what}", "SCENE", "name a scene")
+    if options.what not in OF_A_SCENE and options.scene is not None:
         raise InputError(f"list {options.what}", options.scene, "takes no scene")
     if sys.stdout is None:
         raise InputError(f"list {options.what}", "", "the standard output is closed")

@@ -19,7 +19,7 @@ MAX_COORDINATE_M = 1e9
 """Farthest camera; beyond it 32-bit positions hold no scene."""
 
 VECTOR_FLAGS = frozenset({"--eye", "--target"})
-LISTS = ("views", "settings", "scenes", "cameras", "bindings")
+LISTS = ("views", "settings", "scenes", "cameras", "animations", "bindings")
 
 Command = Callable[[argparse.Namespace], None]
 
@@ -118,12 +118,17 @@ def _add_bench_flags(parser: _Parser) -> None:
         default="none",
         help="voxel work forced in each frame: none, relight, revoxelize (default: none)",
     )
+    flag("--time", "S", _number(0, 1e6), 0.0, "scene time of the first frame, s (default: 0)")
+    fps = "frames a second of scene time; 0 stands still (default: 30)"
+    flag("--fps", "F", _number(0, 1e4), 30.0, fps)
     flag("--json", "B.json", Path, None, "also write the figures, in ms (default: none)")
 
 
 def _add_list_words(parser: _Parser) -> None:
     parser.add_argument("what", choices=LISTS, help="what to list")
-    parser.add_argument("scene", nargs="?", metavar="SCENE", help="whose cameras (no default)")
+    parser.add_argument(
+        "scene", nargs="?", metavar="SCENE", help="whose cameras or animations (no default)"
+    )
 
 
 _COMMANDS: dict[str, tuple[str, Callable[[_Parser], None]]] = {

@@ -6,14 +6,17 @@ from collections.abc import Sequence
 
 from elemental.settings import SETTINGS
 
+OF_A_SCENE = ("cameras", "animations")
+"""What is listed of one scene."""
+
 
 def lines(what: str, scene: str | None = None) -> list[str]:
-    """The lines of ``views``, ``settings``, ``scenes``, ``cameras`` (of ``scene``) or ``bindings``.
+    """The lines of ``views``, ``settings``, ``scenes`` or ``bindings``; of one of OF_A_SCENE.
 
     Raises InputError for a scene that can't be opened.
     """
-    if what == "cameras":
-        return _cameras(scene or "")
+    if what in OF_A_SCENE:
+        return _of_scene(what, scene or "")
     tables = {"views": _views, "settings": _settings, "scenes": _scenes, "bindings": _bindings}
     return tables[what]()
 
@@ -52,8 +55,8 @@ def _bindings() -> list[str]:
     return _columns([(b.keys_text(), b.help) for b in BINDINGS])
 
 
-def _cameras(scene: str) -> list[str]:
-    from elemental.session import open_scene  # noqa: PLC0415 (only this list opens a scene)
+def _of_scene(what: str, scene: str) -> list[str]:
+    from elemental.session import open_scene  # noqa: PLC0415 (only these lists open a scene)
 
     opened, _ = open_scene(scene, ())
-    return [camera.name for camera in opened.cameras]
+    return [camera.name for camera in opened.cameras] if what == "cameras" else opened.animations

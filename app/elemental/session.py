@@ -27,6 +27,7 @@ from elemental.scene.defaults import (
     note_emission_only,
     note_exposure,
 )
+from elemental.scene.evaluate import placed_camera
 from elemental.scene.load import load_scene
 from elemental.scene.model import Camera, CameraPath, Environment, Scene, framing_camera
 from elemental.settings import Settings
@@ -52,9 +53,16 @@ class Stage:
     camera: Camera
     path: CameraPath | None
 
+    @property
+    def camera_moves(self) -> bool:
+        """Whether scene time moves the camera."""
+        return self.path is not None or self.camera.node >= 0
+
     def camera_at(self, time_s: float) -> Camera:
         """The camera of the frame at ``time_s`` seconds of scene time."""
-        return self.camera if self.path is None else camera_at(self.path, time_s)
+        if self.path is not None:
+            return camera_at(self.path, time_s)
+        return placed_camera(self.scene, self.camera, time_s)
 
 
 def open_scene(name: str | None, assignments: Iterable[str]) -> tuple[Scene, Settings]:

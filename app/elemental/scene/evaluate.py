@@ -73,6 +73,13 @@ def evaluate(scene: Scene, time_s: float) -> Pose:
     )  # fmt: skip
 
 
+def placed_camera(scene: Scene, camera: Camera, time_s: float) -> Camera:
+    """One of the scene's cameras, or one made of it, where it is at a time."""
+    if scene.motion is None or camera.node < 0:
+        return camera
+    return _camera_at(camera, _nodes(scene.motion, time_s))
+
+
 @dataclass(frozen=True)
 class _Nodes:
     """world (N, 4, 4) float64, visible (N,) bool, weights (T,) float64 by node."""

@@ -12,6 +12,7 @@ from elemental.core.errors import InputError
 from elemental.frame import VIEWS, Frame, Renderer
 from elemental.gpu.device import Device
 from elemental.picture import save_picture
+from elemental.scene.evaluate import placed_camera
 from elemental.session import Stage, Viewpoint, set_stage
 from elemental.ui.averages import Averages
 from elemental.ui.clock import SceneClock
@@ -61,8 +62,8 @@ class App:
         self.gui = Gui(window)
         self.renderer = Renderer(self.device, stage.scene, stage.settings, words.size)
         self.fly = FlyCamera.at(stage.camera, _diagonal(stage))
-        self.rides = stage.path is not None
-        """Whether the scene's camera path moves the camera, until the user does."""
+        self.rides = stage.camera_moves
+        """Whether the scene moves the camera, until the user does."""
         self.clock = SceneClock()
         self.averages = Averages()
         self.views = list(VIEWS)
@@ -124,7 +125,7 @@ class App:
             case "camera.pick":
                 self._pick_camera(index)
             case "camera.home":
-                self.rides = self.stage.path is not None
+                self.rides = self.stage.camera_moves
                 self.fly.jump(self.stage.camera)
             case "help":
                 self.shows_help = not self.shows_help
@@ -180,7 +181,7 @@ class App:
         cameras = self.stage.scene.cameras
         if index < len(cameras):
             self.rides = False
-            self.fly.jump(cameras[index])
+            self.fly.jump(placed_camera(self.stage.scene, cameras[index], self.clock.time_s))
             self.say(f"camera {index + 1}: {cameras[index].name}")
         else:
             self.say(f"the scene has {len(cameras)} cameras")
