@@ -12,8 +12,8 @@
 
 // Content-adaptive steps, in voxels of the cone's level: a long one after a clear sample lands at most
 // on the middle of the next surface, a short one never steps over it.
-const float CONE_STEP = 0.75;
-const float CONE_STEP_CLEAR = 1.0;
+const float CONE_STEP = 0.6;
+const float CONE_STEP_CLEAR = 0.8;
 const float CONE_CLEAR = 0.02;         // opacity below which a sample counts as clear
 const float CONE_OPAQUE = 0.98;        // stop where this much is hidden
 const float CONE_SKIP_EPSILON = 0.01;  // finest voxels past the far side of an empty node
@@ -27,13 +27,12 @@ const float CONE_FOOTPRINT = 2.0;
 // Extinction a voxel length of a sample with the opacity a. Trilinear filtering spreads a one-voxel
 // layer of opacity A into the profile A (1 - |x|); this is the function whose integral over that
 // profile is -ln(1 - A), so a layer hides what it covers: solve (2/A) int_0^A e(s) ds = -ln(1 - A).
-// The last factor is for layers that the lattice cuts at an angle: their voxels stand in steps, between
-// which a ray meets half their opacity. Without it a sheet along the diagonal lets 46 % through and a
-// closed room with slanted walls of two voxels 3 % of the sky; with it 35 % and 0.1 %. The price: half
-// a plane hides 0.63 of a cone. [inferred: (1-a)^(step) leaks 14 % of an opaque layer]
+// The last factor is for samples that fall beside the middle of a layer, and for layers that the lattice
+// cuts at an angle: their voxels stand in steps. [inferred: (1-a)^(step) leaks 14 % of an opaque layer;
+// docs/gi.md has what the factor closes and what it costs]
 float voxel_extinction(float a) {
     float clear = max(1.0 - a, 1.0 / 512.0);
-    return 0.5 * (a / clear - log(clear)) * (1.0 + 6.0 * a * a);
+    return 0.5 * (a / clear - log(clear)) * (1.0 + 3.0 * a * a * a * a);
 }
 
 // Distance, in finest voxels, from p along direction to where it leaves the cell.

@@ -14,11 +14,10 @@ uniform sampler3D u_leaf_normals; // mean normal x opacity
 struct ViewOfVoxels {
     vec3 direction;
     uvec3 sides;   // that it sees
-    vec3 weights;  // of these sides
 };
 
 ViewOfVoxels view_of_voxels(vec3 direction) {
-    return ViewOfVoxels(direction, sides_seen(direction), side_weights(direction));
+    return ViewOfVoxels(direction, sides_seen(direction));
 }
 
 // Three trilinear lookups, one for each side that the ray sees, weighted by direction.
@@ -28,17 +27,20 @@ vec4 sides_lookup(Node node, vec3 local, ViewOfVoxels view) {
     vec3 z = at.z + vec3(view.sides * BRICK_SIDE) * u_octree.atlas_texel.z;
     vec4 value = mean_of_sides(
         textureLod(u_brick_atlas, vec3(at.xy, z.x), 0.0), textureLod(u_brick_atlas, vec3(at.xy, z.y), 0.0),
-        textureLod(u_brick_atlas, vec3(at.xy, z.z), 0.0), view.weights);
+        textureLod(u_brick_atlas, vec3(at.xy, z.z), 0.0), view.direction);
     return vec4(value.rgb * node_scale(node), value.a);
 }
 
-// The finest level knows the normal, so that its front shows all of its radiance, its back none.
+// The finest level knows the normal, so that its front shows all of its radiance, its back none; where
+// a layer has fewer voxels an area, each hides that much more.
 vec4 leaf_lookup(Node node, vec3 local, ViewOfVoxels view) {
     vec3 at = (vec3(leaf_texel(node.child - 1u)) + 0.5 + 2.0 * local) * u_octree.leaf_atlas_texel;
     vec4 value = textureLod(u_leaf_colors, at, 0.0);
     if (value.a <= 0.0) return vec4(0.0);
     vec3 normal = textureLod(u_leaf_normals, at, 0.0).xyz / value.a;
-    return vec4(value.rgb * (node_scale(node) * front_visibility(normal, view.direction)), value.a);
+    float opacity = min(value.a / voxels_an_area(normal), 1.0);
+    float shown = front_visibility(normal, view.direction) * opacity / value.a;
+    return vec4(value.rgb * (node_scale(node) * shown), opacity);
 }
 
 vec4 node_lookup(Node node, int level, vec3 local, ViewOfVoxels view) {

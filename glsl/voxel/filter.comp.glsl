@@ -32,15 +32,16 @@ uint finer_brick(uvec3 own_cell, uint own_child, ivec3 cell, int level, out int 
     return node_has_brick(child) ? node_brick(child) : NO_BRICK;
 }
 
-// One axis of a voxel, slab by slab along it, so that only two running sums are kept.
+// One axis of a voxel: column by column along it, then their mean. What stands in one column of a
+// thin slanted layer and what stands in the next hide different parts, so that their opacities add.
 void filter_axis(uint voxel, uint axis, ivec3 centre, int finer, Cells cells) {
-    vec4 plus_side = vec4(0.0);   // composited towards a viewer on the + side
+    vec4 plus_side = vec4(0.0);   // as a viewer on the + side sees it
     vec4 minus_side = vec4(0.0);
-    for (int along = -1; along <= 1; ++along) {
-        vec4 plus_slab = vec4(0.0);
-        vec4 minus_slab = vec4(0.0);
-        for (int i = 0; i < 9; ++i) {
-            ivec2 across = ivec2(i % 3, i / 3) - 1;
+    for (int i = 0; i < 9; ++i) {
+        ivec2 across = ivec2(i % 3, i / 3) - 1;
+        vec4 plus_column = vec4(0.0);
+        vec4 minus_column = vec4(0.0);
+        for (int along = -1; along <= 1; ++along) {
             ivec3 offset = axis == 0u ? ivec3(along, across) : axis == 1u ? ivec3(across.y, along, across.x)
                                                              : ivec3(across, along);
             ivec3 in_cell = ivec3(greaterThanEqual(offset, ivec3(0)));
@@ -48,16 +49,12 @@ void filter_axis(uint voxel, uint axis, ivec3 centre, int finer, Cells cells) {
             uint bit = voxel_of_point(uvec3(offset));
             if ((cells.points[cell] & (1u << bit)) == 0u) continue;
             AxisVoxel v = axis_voxel_at(cells.brick[cell], cells.reached[cell], uvec3(centre + offset), finer, axis);
-            vec2 weight = vec2(0.5) - 0.25 * vec2(abs(across));
-            plus_slab += weight.x * weight.y * v.plus_side;
-            minus_slab += weight.x * weight.y * v.minus_side;
+            plus_column = over(along == 0 ? v.plus_side : half_slab(v.plus_side), plus_column);
+            minus_column = over(minus_column, along == 0 ? v.minus_side : half_slab(v.minus_side));
         }
-        if (along != 0) {
-            plus_slab = half_slab(plus_slab);
-            minus_slab = half_slab(minus_slab);
-        }
-        plus_side = over(plus_slab, plus_side);
-        minus_side = over(minus_side, minus_slab);
+        vec2 weight = vec2(0.5) - 0.25 * vec2(abs(across));
+        plus_side += weight.x * weight.y * plus_column;
+        minus_side += weight.x * weight.y * minus_column;
     }
     sided[voxel * BRICK_DIRECTIONS + axis * 2u] = pack_half4(plus_side);
     sided[voxel * BRICK_DIRECTIONS + axis * 2u + 1u] = pack_half4(minus_side);

@@ -26,11 +26,7 @@ GRID = Grid.fit((vector(-1.42, -1.42, -1.42), vector(1.42, 1.42, 1.42)), 64)
 VOXEL = GRID.voxel_m
 RADIANCE = vector(2.0, 0.5, 0.125)
 PLANE_ERROR = 0.03
-PLANE_WORST = 0.08
-"""How far single cones may stray where the sheet lies along the lattice."""
-GRAZING = 0.6
-"""Radians off the normal from where twice as much is allowed: the sides that such a cone sees
-edge-on know only half of the sheet."""
+"""How far any single cone may stray where the sheet lies along the lattice."""
 
 
 def sheet(stage: MakeStage, normal: Array, shape: Shape | None = None) -> Stage:
@@ -75,21 +71,19 @@ def test_a_cone_into_a_plane_returns_its_radiance(
     rms = np.sqrt((error**2).mean())
     print(f"plane, tilt {tilt}, angle {half_angle}: mean {error.mean():+.4f}, rms {rms:.4f}, "
           f"worst {error.min():+.3f}")  # fmt: skip
-    allowed = 2.0 if tilt > GRAZING else 1.0
-    assert rms <= allowed * PLANE_ERROR
-    assert np.abs(error).max() <= allowed * PLANE_WORST
+    assert np.abs(error).max() <= PLANE_ERROR
     assert (seen[:, 3] <= 1.0).all()
 
 
 Normal = tuple[int, int, int]
 LEAST_OPACITY: dict[Normal, float] = {
-    (1, 1, 0): 0.77,
-    (1, 1, 1): 0.63,
-    (2, 1, 0): 0.93,
-    (3, 10, 1): 0.97,
+    (1, 1, 0): 0.91,
+    (1, 1, 1): 0.79,
+    (2, 1, 0): 0.91,
+    (3, 10, 1): 0.95,
 }
 """What a sheet of that normal hides at least, as a mean over cones straight into it."""
-LEAST_SHOWN = 0.95
+LEAST_SHOWN = 0.985
 
 
 @pytest.mark.parametrize("half_angle", [0.02, 0.335])
@@ -133,8 +127,9 @@ def test_occlusion_behind_a_half_plane_follows_the_covered_fraction(
     stage: MakeStage, half_angle: float
 ) -> None:
     error = coverage_errors(stage, half_angle)
-    assert np.abs(error).max() <= 0.45
-    assert np.sqrt((error**2).mean()) <= 0.19
+    assert np.abs(error).max() <= 0.35
+    assert np.abs(error.mean()) <= 0.09
+    assert np.sqrt((error**2).mean()) <= 0.11
 
 
 def test_empty_space_is_clear_and_black(stage: MakeStage) -> None:
@@ -158,7 +153,7 @@ def test_far_walls_are_found_across_empty_nodes(stage: MakeStage) -> None:
     origins[:, 1] = rng.uniform(-1.0, 1.4, 3000)
     directions = np.stack([*rng.uniform(-0.2, 0.2, (2, 3000)), -np.ones(3000)])[[0, 2, 1]].T
     seen = trace(made, origins, directions, 0.0)
-    assert np.abs(radiance_errors(seen)).max() <= PLANE_WORST
+    assert np.abs(radiance_errors(seen)).max() <= PLANE_ERROR
 
 
 def test_the_start_bias_passes_over_what_is_nearer(stage: MakeStage) -> None:

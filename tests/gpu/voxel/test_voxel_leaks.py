@@ -66,15 +66,15 @@ def arriving(stage: Stage, turn: Array) -> Array:
 
 
 REACHED = {
-    ("straight", 0): 0.005,
+    ("straight", 0): 0.02,
     ("straight", 2): 0.001,
     ("straight", 4): 0.001,
-    ("turned", 0): 0.12,
-    ("turned", 2): 0.005,
-    ("turned", 4): 0.005,
-    ("diagonal", 0): 0.12,
-    ("diagonal", 2): 0.005,
-    ("diagonal", 4): 0.003,
+    ("turned", 0): 0.01,
+    ("turned", 2): 0.001,
+    ("turned", 4): 0.001,
+    ("diagonal", 0): 0.03,
+    ("diagonal", 2): 0.002,
+    ("diagonal", 4): 0.002,
 }
 """Share of the sky's light that gets in, as a mean, by the room's turn and its walls' voxels."""
 
