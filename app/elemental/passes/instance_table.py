@@ -7,11 +7,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from elemental.passes.scene_pack import Array, area_light_flags, instance_boxes, pack_instances
+from elemental.passes.scene_pack import (
+    Array,
+    area_light_flags,
+    bending,
+    instance_boxes,
+    pack_instances,
+)
 from elemental.scene.area_lights import AreaLight
 from elemental.scene.boxes import MeshBoxes
 from elemental.scene.evaluate import Pose
 from elemental.scene.model import FloatArray, Scene
+
+IDENTITY = np.eye(4, dtype=np.float32)[None]
 
 Box = tuple[FloatArray, FloatArray]
 """World (low, high), each (3,) float32 m."""
@@ -48,6 +56,12 @@ class InstanceTable:
             if mesh not in shapes:
                 shapes[mesh] = MeshBoxes(scene.meshes[mesh])
         self._shapes = [shapes.get(instance.mesh) for instance in scene.instances]
+        self._bends = np.zeros(len(self.rows), np.bool_)
+        self._bends[bending(scene)] = True
+        self._local_low, self._local_high = np.zeros((2, len(self.rows), 3))
+        for number in self._dynamic.tolist():
+            local = shapes[scene.instances[number].mesh].around(IDENTITY)
+            self._local_low[number], self._local_high[number] = local
         self._is_posed = False
 
     def follow(self, pose: Pose, bent: Collection[int]) -> tuple[list[Change], range]:
@@ -63,15 +77,16 @@ class InstanceTable:
         shown = pose.visible != self.visible[numbers]
         changed = moved | shown | np.isin(numbers, list(bent)) & pose.visible
         resting = self._come_to_rest(numbers)
-        changes = []
+        changes: list[Change] = []
         if changed.any():
             touched, visible = numbers[changed], pose.visible[changed]
             before = [self._box(n) for n in touched.tolist()]
             self._place(touched, pose.world_from_local[changed], visible)
-            for number, box in zip(touched.tolist(), before, strict=True):
-                if self.visible[number]:
-                    self._fit(number, pose)
-                changes.append(Change(number, box, self._box(number), True, True))
+            self._fit(touched[visible], pose)
+            changes = [
+                Change(number, box, self._box(number), True, True)
+                for number, box in zip(touched.tolist(), before, strict=True)
+            ]
         written = np.concatenate([numbers[changed], resting])
         self._is_posed = True
         return changes, range(int(written.min()), int(written.max()) + 1) if len(
@@ -125,14 +140,20 @@ class InstanceTable:
         fresh = appear | (not self._is_posed)
         self.rows["prev_world_from_local"][numbers[fresh]] = by_columns[fresh]
 
-    def _fit(self, number: int, pose: Pose) -> None:
-        """Bring the box of a visible instance up to a pose."""
-        shape = self._shapes[number]
-        assert shape is not None, "a pose moves dynamic instances only"
-        joints, weights = pose.joints.get(number), pose.weights.get(number)
-        low, high = shape.around(
-            self._world[number][None],
-            None if joints is None else joints[None],
-            None if weights is None else weights[None],
-        )
-        self.low[number], self.high[number] = low, high
+    def _fit(self, numbers: Array, pose: Pose) -> None:
+        """Bring the boxes of visible instances up to a pose."""
+        rigid = numbers[~self._bends[numbers]]
+        m = self._world[rigid].astype(np.float64)
+        low, high = self._local_low[rigid], self._local_high[rigid]
+        center = np.einsum("nij,nj->ni", m[:, :3, :3], (low + high) / 2) + m[:, :3, 3]
+        reach = np.einsum("nij,nj->ni", np.abs(m[:, :3, :3]), (high - low) / 2)
+        self.low[rigid], self.high[rigid] = center - reach, center + reach
+        for number in numbers[self._bends[numbers]].tolist():
+            shape = self._shapes[number]
+            assert shape is not None, "a pose bends dynamic instances only"
+            joints, weights = pose.joints.get(number), pose.weights.get(number)
+            self.low[number], self.high[number] = shape.around(
+                self._world[number][None],
+                None if joints is None else joints[None],
+                None if weights is None else weights[None],
+            )

@@ -12,7 +12,7 @@ from elemental.gpu.device import Device
 from elemental.gpu.graph import Graph
 from elemental.gpu.resources import Buffer
 from elemental.gpu.shaders import Compute
-from elemental.passes.scene_pack import Array, Geometry
+from elemental.passes.scene_pack import Array, Geometry, bending
 from elemental.scene.evaluate import Pose
 from elemental.scene.model import Mesh, Scene
 
@@ -101,11 +101,6 @@ class Deformer:
         """Free everything but the buffers that were given."""
         for buffer in self._buffers.values():
             buffer.release()
-
-
-def bending(scene: Scene) -> list[int]:
-    """Numbers of the instances whose vertices move against each other."""
-    return [n for n, i in enumerate(scene.instances) if i.skin >= 0 or i.weights is not None]
 
 
 def _bending_meshes(scene: Scene) -> list[int]:

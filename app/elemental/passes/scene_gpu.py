@@ -15,7 +15,7 @@ from elemental.passes import scene_pack
 from elemental.passes.culling import Culling
 from elemental.passes.instance_table import Change, InstanceTable
 from elemental.passes.material_textures import MaterialTextures
-from elemental.passes.scene_deform import Deformer, bending
+from elemental.passes.scene_deform import Deformer
 from elemental.passes.scene_pack import (
     ALL_SLOTS,
     BLEND,
@@ -58,7 +58,7 @@ class GpuScene:
         self._device, self._scene = device, scene
         self._table = InstanceTable(scene, area_lights)
         self._material_changes: dict[int, Change] = {}
-        self._geometry = geometry = scene_pack.pack_geometry(scene, bending(scene))
+        self._geometry = geometry = scene_pack.pack_geometry(scene, scene_pack.bending(scene))
         self.instances = self._upload("instances", self._table.rows, dynamic=True)
         self.materials = self._upload("materials", scene_pack.pack_materials(scene), dynamic=True)
         self.indices = self._upload("indices", geometry.indices)
@@ -72,7 +72,7 @@ class GpuScene:
             self._surface,
         ]
         self._deformer: Deformer | None = None
-        if bending(scene):
+        if scene_pack.bending(scene):
             self._deformer = Deformer(device, scene, geometry, self.positions, self._surface)
         self._textures = MaterialTextures(device, scene)
         self._arrange()

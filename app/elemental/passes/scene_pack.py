@@ -95,6 +95,11 @@ class Batch:
         return slot_mask(texture >= 0 for texture in self.textures)
 
 
+def bending(scene: Scene) -> list[int]:
+    """Numbers of the instances whose vertices move against each other."""
+    return [n for n, i in enumerate(scene.instances) if i.skin >= 0 or i.weights is not None]
+
+
 def pack_geometry(scene: Scene, bending: Sequence[int] = ()) -> Geometry:
     """Merge the scene's meshes, with a copy for each of the instances in `bending`."""
     meshes = scene.meshes

@@ -24,7 +24,7 @@ PHASE_SAMPLES = 128
 LOOPS = 97.0
 """Over how many of the longest loop those lie."""
 GOLDEN = 0.6180339887498949
-MOST_SAMPLES = 1024
+MOST_SAMPLES = 512
 GROWTH = 1.0 / 128.0
 """Of the diagonal of what a moving thing reaches, for what lies between the moments."""
 
