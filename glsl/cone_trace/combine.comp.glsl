@@ -42,12 +42,38 @@ const float PLANE_TOLERANCE = 0.01;
 // What any neighbour counts at least: a pixel without similar ones is filled, not black.
 const float LEAST_SIMILARITY = 1e-4;
 
+// A work group's pixels and the two around them on each side, read once.
+const int REACH = 2;
+const int TILE = 8 + 2 * REACH;
+shared vec4 tile_position[TILE * TILE];  // world space, m; w: 1 on a surface, 0 where nothing is
+shared vec3 tile_normal[TILE * TILE];
+shared vec4 tile_radiance[TILE * TILE];
+#if AREA_LIGHTS
+shared vec4 tile_area[TILE * TILE];
+#endif
+
+void load_tile(ivec2 size) {
+    ivec2 corner = ivec2(gl_WorkGroupID.xy) * 8 - REACH;
+    for (int i = int(gl_LocalInvocationIndex); i < TILE * TILE; i += 64) {
+        ivec2 at = corner + ivec2(i % TILE, i / TILE);
+        tile_position[i] = vec4(0.0);
+        if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) continue;
+        float depth = texelFetch(u_depth, at, 0).r;
+        if (depth >= DEPTH_CLEAR) continue;
+        tile_position[i] = vec4(position_ws_at((vec2(at) + 0.5) * u_view.viewport_px.zw, depth), 1.0);
+        tile_normal[i] = normal10_decode(texelFetch(u_gbuffer_a, at, 0).xyz);
+        ivec2 texel = sub_image_texel(at, size);
+        tile_radiance[i] = texelFetch(u_radiance, texel, 0);
+#if AREA_LIGHTS
+        tile_area[i] = texelFetch(u_area_irradiance, texel, 0);
+#endif
+    }
+}
+
 // 1 on the same plane with the same normal; the cosine between normals counts to the eighth power.
-float surface_similarity(ivec2 at, vec3 p_ws, vec3 normal, float inverse_tolerance) {
-    vec3 neighbour = position_ws_at((vec2(at) + 0.5) * u_view.viewport_px.zw, texelFetch(u_depth, at, 0).r);
-    vec3 neighbour_normal = normal10_decode(texelFetch(u_gbuffer_a, at, 0).xyz);
-    float off_plane = abs(dot(neighbour - p_ws, normal)) * inverse_tolerance;
-    float cosine = max(dot(normal, neighbour_normal), 0.0);
+float surface_similarity(int neighbour, vec3 p_ws, vec3 normal, float inverse_tolerance) {
+    float off_plane = abs(dot(tile_position[neighbour].xyz - p_ws, normal)) * inverse_tolerance;
+    float cosine = max(dot(normal, tile_normal[neighbour]), 0.0);
     cosine *= cosine;
     cosine *= cosine;
     return max(1.0 - off_plane, 0.0) * cosine * cosine;
@@ -56,17 +82,20 @@ float surface_similarity(ivec2 at, vec3 p_ws, vec3 normal, float inverse_toleran
 void main() {
     ivec2 size = ivec2(u_view.viewport_px.xy);
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    load_tile(size);
+    barrier();
     if (any(greaterThanEqual(pixel, size))) return;
-    float depth = texelFetch(u_depth, pixel, 0).r;
-    if (depth >= DEPTH_CLEAR) {
+    ivec2 centre = ivec2(gl_LocalInvocationID.xy) + REACH;
+    int own = centre.y * TILE + centre.x;
+    if (tile_position[own].w == 0.0) {
         imageStore(o_diffuse_gi, pixel, vec4(0.0, 0.0, 0.0, 1.0));
 #if AREA_LIGHTS
         imageStore(o_broad_gi, pixel, vec4(0.0, 0.0, 0.0, 1.0));
 #endif
         return;
     }
-    vec3 normal = normal10_decode(texelFetch(u_gbuffer_a, pixel, 0).xyz);
-    vec3 p_ws = position_ws_at((vec2(pixel) + 0.5) * u_view.viewport_px.zw, depth);
+    vec3 normal = tile_normal[own];
+    vec3 p_ws = tile_position[own].xyz;
     float inverse_tolerance = 1.0 / (PLANE_TOLERANCE * distance(p_ws, u_view.eye_ws));
 
 #if AREA_LIGHTS
@@ -76,22 +105,20 @@ void main() {
     vec4 sum = vec4(0.0);
     float weights = 0.0;
     for (int residue = 0; residue < CONE_COUNT; ++residue) {
-        ivec2 first = ivec2(residue % 3, residue / 3) - 2;
+        ivec2 first = ivec2(residue % 3, residue / 3) - REACH;
         vec4 cone_sum = vec4(0.0);
         float cone_samples = 0.0;
-        for (int y = first.y; y <= 2; y += 3) {
-            for (int x = first.x; x <= 2; x += 3) {
-                ivec2 at = pixel + ivec2(x, y);
-                if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) continue;
-                if (texelFetch(u_depth, at, 0).r >= DEPTH_CLEAR) continue;
-                float similarity = surface_similarity(at, p_ws, normal, inverse_tolerance);
+        for (int y = first.y; y <= REACH; y += 3) {
+            for (int x = first.x; x <= REACH; x += 3) {
+                int neighbour = own + y * TILE + x;
+                if (tile_position[neighbour].w == 0.0) continue;
+                float similarity = surface_similarity(neighbour, p_ws, normal, inverse_tolerance);
                 float tent = float((3 - abs(x)) * (3 - abs(y)));
                 float weight = tent * max(similarity, LEAST_SIMILARITY);
-                ivec2 texel = sub_image_texel(at, size);
 #if AREA_LIGHTS
-                from_area += weight * texelFetch(u_area_irradiance, texel, 0);
+                from_area += weight * tile_area[neighbour];
 #endif
-                vec4 traced = texelFetch(u_radiance, texel, 0);
+                vec4 traced = tile_radiance[neighbour];
                 if (traced.a < 0.0) continue;  // rejected
                 cone_sum += traced * weight;
                 cone_samples += weight;
