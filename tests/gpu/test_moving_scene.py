@@ -37,6 +37,18 @@ def slide(node: int, *points: tuple[float, float, float]) -> Tracks:
     return Tracks("translation", np.array([node]), times, np.array([points]), "linear", times[-1])
 
 
+def turn(node: int, seed: int) -> tuple[Tracks, Tracks]:
+    """Uneven turning and stretching for two seconds."""
+    rng, times = np.random.default_rng(seed), np.array([0.0, 1.0, 2.0])
+    turns = rng.normal(0, 1, (1, 3, 4))
+    turns /= np.linalg.norm(turns, axis=2, keepdims=True)
+    scales = rng.uniform(0.6, 1.2, (1, 3, 3))
+    return (
+        Tracks("rotation", np.array([node]), times, turns, "linear", 2.0),
+        Tracks("scale", np.array([node]), times, scales, "linear", 2.0),
+    )
+
+
 def blink(node: int, *shown: float) -> Tracks:
     times = np.arange(len(shown), dtype=np.float64)
     values = np.array(shown)[None, :, None]
@@ -44,7 +56,7 @@ def blink(node: int, *shown: float) -> Tracks:
 
 
 def stage() -> Scene:
-    """A floor and a still box; a sliding ball, a glowing sheet that sinks, a box that vanishes
+    """A floor and a still box; a tumbling ball, a glowing sheet that sinks, a box that vanishes
     after a second, and a lamp that moves."""
     made = scene(
         (mesh(quad(6.0)), IDENTITY),
@@ -60,6 +72,7 @@ def stage() -> Scene:
     ball, sheet, cube, lamp = (builder.node() for _ in range(4))
     builder.tracks = [
         slide(ball, (-1, 0.5, 1), (1, 0.5, 1), (1, 0.5, -1)),
+        *turn(ball, 1),
         slide(sheet, (1.5, 2.5, 0), (1.5, 1.5, 0), (1, 1, 0)),
         slide(cube, (0, 0.3, 0), (0, 0.3, 0.5), (0, 0.3, 1)),
         blink(cube, 1, 0, 1),
@@ -107,6 +120,7 @@ def bending_stage() -> Scene:
     rng = np.random.default_rng(5)
     joints = [builder.node(translation=[k - 1, 1, 0]) for k in range(3)]
     builder.tracks = [slide(j, *(rng.normal(0, 0.5, (3, 3)) + vector(j - 1, 1, 0))) for j in joints]
+    builder.tracks += [track for joint in joints for track in turn(joint, joint)]
     first, second, other = (builder.node() for _ in range(3))
     for node, count in ((first, 2), (second, 2), (other, 3)):
         values = rng.normal(0, 0.7, (1, 3, count))
@@ -262,9 +276,9 @@ def test_changes_tell_where_things_were_and_are(on_device: Any) -> None:
     ball, sheet, cube = gpu.changes
     assert (ball.instance, sheet.instance, cube.instance) == (2, 3, 4)
     assert ball.moved
-    for bounds, x in ((ball.before, -1.0), (ball.after, 0.0)):
+    for bounds, y in ((sheet.before, 2.5), (sheet.after, 2.0)):
         assert bounds is not None
-        np.testing.assert_allclose(bounds, [[x - 0.5, 0, 0.5], [x + 0.5, 1, 1.5]], atol=1e-6)
+        np.testing.assert_allclose(bounds, [[1.1, y, -0.4], [1.9, y, 0.4]], atol=1e-6)
     gpu.update(evaluate(world, 1.5))
     hidden = gpu.changes[2]
     assert hidden.before is not None
@@ -357,6 +371,22 @@ def test_shadow_maps_follow_what_they_see(device: Device, renderers: Any) -> Non
     assert drawn(20.0) == {"shadow.1.spot.0"}
 
 
+def test_what_comes_into_view_is_drawn(renderers: Any) -> None:
+    world = scene((mesh(quad(4.0)), IDENTITY), (mesh(sphere(0.5, rings=8)), IDENTITY))
+    world.instances[1].dynamic = True
+    renderer = renderers(world)
+
+    def covered(x: float) -> int:
+        pose = pose_of(instances=np.array([1]), world_from_local=at(x, 2, 0)[None],
+                       visible=np.array([True]))  # fmt: skip
+        shown = renderer.read(renderer.render(EYE, 0.0, 0, "scene_color", pose))
+        return int((shown[:16, :, 3] > 0.0).sum())  # above the floor
+
+    assert covered(30.0) == 0
+    assert covered(0.0) > 50
+    assert covered(30.0) == 0
+
+
 def test_static_and_dynamic_instances_can_be_drawn_apart(on_device: Any) -> None:
     world = stage()
     gpu = on_device(world)
@@ -377,7 +407,8 @@ def test_a_new_material_is_the_scene_s_and_changes_its_users(renderers: Any) -> 
         (2, colored(0.9, 0.1, 0.1)),
         (2, glowing(0, 3, 0)),
         (2, glowing(0, 30, 0)),  # brighter than what the voxels were made for
-        (3, colored(0.5, 0.5, 0.5)),  # was an area light
+        (3, material(base_color=vector(3, 2, 1, 1), unlit=True)),  # was an area light
+        (3, colored(0.5, 0.5, 0.5)),
         (1, material(base_color=vector(0.2, 0.9, 0.2, 0.5), alpha_mode="blend")),
         (1, material(base_color=vector(0.2, 0.9, 0.2, 1.0), double_sided=True)),
     ):

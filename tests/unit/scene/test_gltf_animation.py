@@ -135,6 +135,29 @@ def test_tracks_that_hold_still_leave_things_static(tmp_path: Path) -> None:
     np.testing.assert_array_equal(scene.instances[0].world_from_local[:3, 3], [5, 0, 0])
 
 
+def test_tangents_alone_move_a_cubic_track(tmp_path: Path) -> None:
+    """Equal values and slopes of 4 a second at both ends: 4 (s^3 - 2 s^2 + s) + 4 (s^3 - s^2) at
+    half of a second is 0, at a quarter 3/8."""
+    builder = GltfBuilder()
+    node = builder.add(TRIANGLE)
+    keys = [[4, 0, 0], [0, 0, 0], [4, 0, 0]] * 2
+    builder.animation((node, "translation", [0, 1], keys), interpolation="CUBICSPLINE")
+    assert places(builder.load(tmp_path), 0.25) == [[0.375, 0, 0]]
+
+
+def test_what_is_held_still_beside_a_motion_is_no_track(tmp_path: Path) -> None:
+    builder = moved_triangle()
+    still = (1, "rotation", TWO, [QUARTER_Z, QUARTER_Z])
+    builder.animation((1, "translation", TWO, ALONG_X), still)
+    del builder.root["animations"][0]
+    scene = builder.load(tmp_path)
+    assert scene.motion is not None
+    assert [track.path for track in scene.motion.tracks] == ["translation"]
+    np.testing.assert_allclose(
+        evaluate(scene, 0.0).world_from_local[0][:3, 0], [0, 1, 0], atol=1e-6
+    )
+
+
 def test_what_starts_at_scale_0_appears(tmp_path: Path) -> None:
     builder = GltfBuilder()
     builder.add(TRIANGLE)
@@ -312,6 +335,32 @@ def test_flat_normals_follow_a_target_to_its_own(tmp_path: Path) -> None:
     still = posed(builder.load(tmp_path), np.nextafter(2.0, 0.0))
     shape = still.meshes[still.instances[0].mesh]
     np.testing.assert_allclose(shape.normals, np.tile([0, -1, 0], (3, 1)), atol=1e-6)
+
+
+def test_vertices_that_tangents_split_keep_their_targets(tmp_path: Path) -> None:
+    """Two triangles about a seam of mirrored texture coordinates share vertices in the file."""
+    builder = GltfBuilder()
+    positions = np.array([[-1, 0, 0], [0, -1, 0], [0, 1, 0], [1, 0, 0]], np.float32)
+    indices = np.array([0, 1, 2, 2, 1, 3], np.uint16)
+    uv = np.abs(positions[:, :2])
+    uv[1, 1] = 2.0
+    image = {"index": builder.texture(np.full((2, 2, 3), 128))}
+    primitive = builder.primitive(
+        positions, indices, normals=np.tile(UP[:1], (4, 1)), uv0=uv,
+        material=builder.material(normalTexture=image),
+    )  # fmt: skip
+    builder.morphed(primitive, {"positions": positions})
+    builder.skinned(primitive, np.zeros((4, 4)), np.tile([1.0, 0, 0, 0], (4, 1)))
+    joint = builder.node()
+    node = builder.node(mesh=builder.mesh(primitive), skin=builder.skin([joint]))
+    builder.animation((node, "weights", TWO, [0.0, 1.0]))
+    scene = builder.load(tmp_path)
+    shape = scene.meshes[0]
+    assert len(shape.positions) == 6
+    assert shape.morphs is not None
+    assert shape.influences is not None
+    assert len(shape.influences.joints) == 6
+    np.testing.assert_array_equal(shape.morphs.positions[0], shape.positions)
 
 
 def test_a_triangle_that_a_target_opens_is_kept(tmp_path: Path) -> None:
