@@ -2,31 +2,76 @@
 
 #include "lib/voxel.glsl"
 #include "shared/sided.glsl"
+#include "lib/node_blocks.glsl"
 
-uint sided_index(uint brick, uint voxel, uint side) {
-    return (brick * BRICK_VOXELS + voxel) * BRICK_DIRECTIONS + side;
-}
+// What the voxels to be read can be: leaves, filtered ones, or, where regions have leaves of
+// different levels, either.
+#define EITHER_VOXELS 0
+#define LEAF_VOXELS 1
+#define FILTERED_VOXELS 2
+#ifndef VOXEL_KIND
+#define VOXEL_KIND EITHER_VOXELS
+#endif
+// 1: all regions have the finest leaf level.
+#ifndef ONE_LEAF_LEVEL
+#define ONE_LEAF_LEVEL 0
+#endif
 
-AxisVoxel brick_voxel(uint brick, uint voxel, uint axis) {
-    if ((bricks[brick].cell & BRICK_LEAF) != 0u) {
-        return leaf_voxel(leaf_slot(brick) * BRICK_VOXELS + voxel, axis);
+Sides filtered_sides(uint voxel) {
+    uint first = voxel * BRICK_DIRECTIONS;
+    Sides s;
+    for (uint axis = 0u; axis < 3u; ++axis) {
+        s.plus[axis] = unpack_half4(sided[first + axis * 2u]);
+        s.minus[axis] = unpack_half4(sided[first + axis * 2u + 1u]);
     }
-    uint index = sided_index(brick, voxel, axis * 2u);
-    return AxisVoxel(unpack_half4(sided[index]), unpack_half4(sided[index + 1u]));
+    return s;
 }
 
-const uint NO_BRICK = 0xffffffffu;
+Sides sides_of_voxel(uint brick, uint voxel) {
+#if VOXEL_KIND == LEAF_VOXELS
+    return leaf_sides(leaf_slot(brick) * BRICK_VOXELS + voxel);
+#elif VOXEL_KIND == FILTERED_VOXELS
+    return filtered_sides(brick * BRICK_VOXELS + voxel);
+#else
+    if ((bricks[brick].cell & BRICK_LEAF) != 0u) return leaf_sides(leaf_slot(brick) * BRICK_VOXELS + voxel);
+    return filtered_sides(brick * BRICK_VOXELS + voxel);
+#endif
+}
 
-// The brick that holds a cell's points. Where the octree ends above `level`, the deepest brick on
-// the way; `reached` says which level that is. NO_BRICK where there is nothing at all.
+// Opacities along the axes: a voxel hides the same towards both sides.
+vec3 leaf_opacity(uint voxel) { return vec3(unpackHalf2x16(radiance[voxel].y).y); }
+
+vec3 filtered_opacity(uint voxel) {
+    uint first = voxel * BRICK_DIRECTIONS;
+    return vec3(unpackHalf2x16(sided[first].y).y, unpackHalf2x16(sided[first + 2u].y).y,
+                unpackHalf2x16(sided[first + 4u].y).y);
+}
+
+vec3 opacity_of_voxel(uint brick, uint voxel) {
+#if VOXEL_KIND == LEAF_VOXELS
+    return leaf_opacity(leaf_slot(brick) * BRICK_VOXELS + voxel);
+#elif VOXEL_KIND == FILTERED_VOXELS
+    return filtered_opacity(brick * BRICK_VOXELS + voxel);
+#else
+    if ((bricks[brick].cell & BRICK_LEAF) != 0u) return leaf_opacity(leaf_slot(brick) * BRICK_VOXELS + voxel);
+    return filtered_opacity(brick * BRICK_VOXELS + voxel);
+#endif
+}
+
+// The brick that holds a cell's points, or NO_BRICK; `reached` says which level it is of. Where the
+// octree ends above `level`, the leaf of a coarser region stands for the cell.
 uint brick_of_cell(ivec3 cell, int level, out int reached) {
     reached = level;
-    if (any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, ivec3(1 << level)))) return NO_BRICK;
-    Node node = nodes[find_node(uvec3(cell), level, reached)];
-    if (!node_has_brick(node)) return NO_BRICK;
-    uint brick = node_brick(node);
-    // A node without the wanted child stands for it only where its region has no finer level.
-    if (reached < level && (bricks[brick].cell & BRICK_LEAF) == 0u) return NO_BRICK;
+    uint brick = brick_of_node(cell, level, octree_state.brick_count);
+#if ONE_LEAF_LEVEL == 0
+    while (brick == NO_BRICK && reached > u_octree.coarsest_leaf) {
+        --reached;
+        uint coarser = brick_of_node(cell >> (level - reached), reached, octree_state.brick_count);
+        if (coarser == NO_BRICK) continue;
+        if ((bricks[coarser].cell & BRICK_LEAF) == 0u) break;
+        brick = coarser;
+    }
+#endif
     return brick;
 }
 
@@ -34,10 +79,4 @@ uint brick_of_cell(ivec3 cell, int level, out int reached) {
 uint points_of_cell(uint brick, int reached, int level) {
     if (brick == NO_BRICK) return 0u;
     return reached < level ? 0xffu : bricks[brick].node >> BRICK_POINTS_SHIFT;
-}
-
-// Voxel at a lattice point of `level` in the brick of its cell. A coarser neighbour region lends
-// the nearest point that it has.
-AxisVoxel axis_voxel_at(uint brick, int reached, uvec3 point, int level, uint axis) {
-    return brick_voxel(brick, voxel_of_point(point >> uint(level - reached)), axis);
 }

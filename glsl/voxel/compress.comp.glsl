@@ -6,48 +6,43 @@
 // below 1/255 of its brick's largest value: half a step of at most twice that value.
 
 #include "lib/dispatch.glsl"
-#include "lib/brick_points.glsl"
+#include "lib/surroundings.glsl"
+#include "lib/brick_multiplier.glsl"
 #include "lib/brick_atlas.glsl"
 
 layout(local_size_x = 64) in;
 
 layout(rgba8) writeonly uniform image3D u_atlas;
 
-// The largest value of a voxel's sides. Some side of a leaf shows its radiance whole.
-float largest_side(uint brick, uint voxel) {
-    if ((bricks[brick].cell & BRICK_LEAF) != 0u) {
-        return largest(unpack_half4(radiance[leaf_slot(brick) * BRICK_VOXELS + voxel]).rgb);
-    }
-    float maximum = 0.0;
-    for (uint side = 0u; side < BRICK_DIRECTIONS; ++side) {
-        maximum = max(maximum, largest(unpack_half4(sided[sided_index(brick, voxel, side)]).rgb));
-    }
-    return maximum;
-}
-
 void main() {
     uint brick = linear_thread_id();
     if (brick >= octree_state.interior_count) return;
-    BrickPoints points = brick_points(brick);
-    float maximum = 0.0;
+    uint thread = gl_LocalInvocationID.x;
+    uint cell = bricks[brick].cell;
+    Surroundings points = surroundings(thread, ivec3(unpack_cell(cell)), unpack_cell_level(cell), 0u);
+    vec3 maximum = vec3(0.0);
     for (uint left = points.occupied; left != 0u; left &= left - 1u) {
         uint voxel;
-        uint owner = owner_of_point(points, texel_of_point(uint(findLSB(left))), voxel);
-        maximum = max(maximum, largest_side(owner, voxel));
+        uint owner = owner_of_point(points, thread, place_of_point(uint(findLSB(left))), voxel);
+        Sides sides = sides_of_voxel(owner, voxel);
+        for (int axis = 0; axis < 3; ++axis) {
+            maximum = max(maximum, max(sides.plus[axis].rgb, sides.minus[axis].rgb));
+        }
     }
-    float inverse_scale = store_multiplier(brick, maximum);
+    float inverse_scale = store_multiplier(brick, largest(maximum));
 
     // The atlas was cleared: points without anything stay as they are.
     ivec3 base = brick_texel(brick);
     for (uint left = points.occupied; left != 0u; left &= left - 1u) {
-        uvec3 texel = texel_of_point(uint(findLSB(left)));
+        uvec3 place = place_of_point(uint(findLSB(left)));
         uint voxel;
-        uint owner = owner_of_point(points, texel, voxel);
-        for (uint axis = 0u; axis < 3u; ++axis) {
-            AxisVoxel v = brick_voxel(owner, voxel, axis);
-            ivec3 at = base + ivec3(texel) + ivec3(0, 0, axis * 2u * BRICK_SIDE);
-            imageStore(u_atlas, at, vec4(v.plus_side.rgb * inverse_scale, v.plus_side.a));
-            imageStore(u_atlas, at + ivec3(0, 0, BRICK_SIDE), vec4(v.minus_side.rgb * inverse_scale, v.minus_side.a));
+        uint owner = owner_of_point(points, thread, place, voxel);
+        Sides sides = sides_of_voxel(owner, voxel);
+        for (int axis = 0; axis < 3; ++axis) {
+            ivec3 at = base + ivec3(place) + ivec3(0, 0, axis * 2 * int(BRICK_SIDE));
+            imageStore(u_atlas, at, vec4(sides.plus[axis].rgb * inverse_scale, sides.plus[axis].a));
+            at.z += int(BRICK_SIDE);
+            imageStore(u_atlas, at, vec4(sides.minus[axis].rgb * inverse_scale, sides.minus[axis].a));
         }
     }
 }

@@ -1,7 +1,8 @@
 // Writes the 3x3x3 colours and normals of each brick of the finest level. Encoding: compress.comp.
 
 #include "lib/dispatch.glsl"
-#include "lib/brick_points.glsl"
+#include "lib/surroundings.glsl"
+#include "lib/brick_multiplier.glsl"
 #include "lib/brick_atlas.glsl"
 
 layout(local_size_x = 64) in;
@@ -13,24 +14,27 @@ void main() {
     uint slot = linear_thread_id();
     uint brick = octree_state.interior_count + slot;
     if (brick >= octree_state.brick_count) return;
-    BrickPoints points = brick_points(brick);
-    float maximum = 0.0;
+    uint thread = gl_LocalInvocationID.x;
+    uint cell = bricks[brick].cell;
+    Surroundings points = surroundings(thread, ivec3(unpack_cell(cell)), unpack_cell_level(cell), 0u);
+    vec3 maximum = vec3(0.0);
     for (uint left = points.occupied; left != 0u; left &= left - 1u) {
         uint voxel;
-        uint owner = owner_of_point(points, texel_of_point(uint(findLSB(left))), voxel);
-        maximum = max(maximum, largest(unpack_half4(radiance[leaf_slot(owner) * BRICK_VOXELS + voxel]).rgb));
+        uint owner = owner_of_point(points, thread, place_of_point(uint(findLSB(left))), voxel);
+        maximum = max(maximum, unpack_half4(radiance[leaf_slot(owner) * BRICK_VOXELS + voxel]).rgb);
     }
-    float inverse_scale = store_multiplier(brick, maximum);
+    float inverse_scale = store_multiplier(brick, largest(maximum));
 
     // The atlases were cleared: points without anything stay as they are.
     ivec3 base = leaf_texel(slot);
     for (uint left = points.occupied; left != 0u; left &= left - 1u) {
-        uvec3 texel = texel_of_point(uint(findLSB(left)));
+        uvec3 place = place_of_point(uint(findLSB(left)));
         uint voxel;
-        uint index = leaf_slot(owner_of_point(points, texel, voxel)) * BRICK_VOXELS + voxel;
+        uint owner = owner_of_point(points, thread, place, voxel);
+        uint index = leaf_slot(owner) * BRICK_VOXELS + voxel;
         vec4 value = unpack_half4(radiance[index]);
         vec3 normal = unpackSnorm4x8(attributes[index].normal).xyz;
-        imageStore(u_colors, base + ivec3(texel), vec4(value.rgb * inverse_scale, value.a));
-        imageStore(u_normals, base + ivec3(texel), vec4(normal * value.a, 0.0));
+        imageStore(u_colors, base + ivec3(place), vec4(value.rgb * inverse_scale, value.a));
+        imageStore(u_normals, base + ivec3(place), vec4(normal * value.a, 0.0));
     }
 }

@@ -4,14 +4,13 @@
 
 #include "lib/dispatch.glsl"
 #include "lib/regions.glsl"
-#include "lib/node_ranks.glsl"
+#include "lib/node_blocks.glsl"
 
 layout(local_size_x = 128) in;
 
 layout(std430) readonly buffer State { OctreeState octree_state; };
 // A fragment's position becomes the index + 1 of the next fragment of its voxel, 0 for none.
 layout(std430) buffer Fragments { VoxelFragment fragments[]; };
-layout(std430) readonly buffer NodeBits { uint node_words[]; };
 // Cleared: a voxel's albedo holds the index + 1 of its first fragment until it is resolved.
 layout(std430) buffer Attributes { VoxelAttributes attributes[]; };
 
@@ -20,11 +19,8 @@ void main() {
     if (index >= min(octree_state.fragment_count, u_octree.fragment_capacity)) return;
     int level;
     uvec3 point = leaf_point(unpack_position(fragments[index].position), level);
-    uint code = grid_code(level, point >> 1u);
-    uint block = grid_first_block(level) + (code >> 6);
-    uvec2 bits = uvec2(node_words[block * 2u], node_words[block * 2u + 1u]);
-    uint brick = block_rank(block).x + bit_count64(bits & bits_below(code & 63u));
-    if (brick >= octree_state.brick_count) return;  // it was dropped, and counted
+    uint brick = brick_of_node(ivec3(point >> 1u), level, octree_state.brick_count);
+    if (brick == NO_BRICK) return;  // it was dropped, and counted
 
     uint slot = brick - octree_state.level_first[u_octree.coarsest_leaf];
     uvec3 odd = point & 1u;

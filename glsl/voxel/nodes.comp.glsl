@@ -4,11 +4,10 @@
 #include "lib/dispatch.glsl"
 #include "lib/regions.glsl"
 #include "lib/dense_nodes.glsl"
-#include "lib/node_ranks.glsl"
+#include "lib/node_blocks.glsl"
 
 layout(local_size_x = 64) in;
 
-layout(std430) readonly buffer NodeBits { uint node_words[]; };
 layout(std430) readonly buffer Points { uint point_words[]; };
 layout(std430) buffer State { OctreeState octree_state; };
 layout(std430) writeonly buffer VoxelList { uint voxel_list[]; };  // see lib/voxel_list.glsl
@@ -18,7 +17,7 @@ layout(std430) writeonly buffer Bricks { Brick bricks[]; };
 bool node_exists(int level, uvec3 cell) {
     if (!in_grid(level, ivec3(cell))) return false;
     uint code = grid_code(level, cell);
-    return (node_words[cell_word(level, code)] & cell_bit(code)) != 0u;
+    return (node_blocks[node_word(level, code)] & cell_bit(code)) != 0u;
 }
 
 // Existence bits of a node's eight children, as a byte, and where that byte stands.
@@ -28,13 +27,13 @@ uint child_byte(int level, uvec3 cell, out uint block, out uint byte_start) {
     uint code = grid_code(level + 1, first_child);
     block = grid_first_block(level + 1) + (code >> 6);
     byte_start = code & 63u;
-    return (node_words[block * 2u + (byte_start >> 5)] >> (byte_start & 31u)) & 0xffu;
+    return (node_blocks[node_word(level + 1, code)] >> (byte_start & 31u)) & 0xffu;
 }
 
 // Tile of the children + 1, 0 where there are none, their level is dense, or the pool is full.
 uint tile_of_children(int level, uint byte, uint block, uint byte_start) {
     if (level < u_octree.top_level || byte == 0u) return 0u;
-    uvec2 used = used_bytes(uvec2(node_words[block * 2u], node_words[block * 2u + 1u]));
+    uvec2 used = used_bytes(block_bits(block));
     uint tile = block_rank(block).y + bit_count64(used & bits_below(byte_start));
     return tile < octree_state.tile_count ? tile + 1u : 0u;
 }
@@ -102,7 +101,7 @@ void main() {
     uint block = linear_thread_id();
     if (block >= u_octree.block_count) return;
     int level = grid_of_block(block);
-    uvec2 bits = uvec2(node_words[block * 2u], node_words[block * 2u + 1u]);
+    uvec2 bits = block_bits(block);
     bool dense = level <= u_octree.top_level;
     if (!dense && bits == uvec2(0u)) return;
 

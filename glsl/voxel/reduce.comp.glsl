@@ -3,14 +3,14 @@
 // included, can differ from empty, so empty nodes can be skipped without a jump.
 
 #include "lib/dispatch.glsl"
-#include "lib/node_bits.glsl"
+#define NODE_BLOCKS_ACCESS coherent
+#include "lib/node_blocks.glsl"
 #include "lib/regions.glsl"
 #include "shared/octree_level.glsl"
 
 layout(local_size_x = 64) in;
 
 layout(std430) buffer Points { uint point_words[]; };
-layout(std430) buffer NodeBits { uint node_words[]; };
 
 // Points of a 4x4x4 block by their coordinate along an axis, as masks over the block's Morton bits.
 uvec2 odd_half(uint axis) {  // coordinate 1 or 3
@@ -35,9 +35,9 @@ uvec2 points_of_coarser(uint axis, int offset) {
 
 void set_node(ivec3 cell, int level) {
     uint code = grid_code(level, uvec3(cell));
-    uint word = cell_word(level, code);
+    uint word = node_word(level, code);
     uint bit = cell_bit(code);
-    if ((node_words[word] & bit) == 0u) atomicOr(node_words[word], bit);
+    if ((node_blocks[word] & bit) == 0u) atomicOr(node_blocks[word], bit);
 }
 
 void set_coarser_point(ivec3 point, int level) {

@@ -6,10 +6,6 @@
 
 layout(local_size_x = 256) in;
 
-layout(std430) readonly buffer NodeBits { uint node_words[]; };
-// A rank a block, then a sum a group.
-layout(std430) writeonly buffer Ranks { uvec2 ranks[]; };
-
 void main() {
     const uint blocks_a_thread = SCAN_BLOCKS / SCAN_GROUP;
     uint thread = gl_LocalInvocationID.x;
@@ -20,13 +16,12 @@ void main() {
         uint block = first + i;
         counts[i] = total;
         if (block >= u_octree.block_count) continue;
-        uvec2 bits = uvec2(node_words[block * 2u], node_words[block * 2u + 1u]);
-        total += node_counts(bits, grid_of_block(block));
+        total += node_counts(block_bits(block), grid_of_block(block));
     }
     uvec2 through = group_inclusive_sum(thread, total);
     uvec2 before = through - total;
     for (uint i = 0u; i < blocks_a_thread; ++i) {
-        if (first + i < u_octree.block_count) ranks[first + i] = before + counts[i];
+        if (first + i < u_octree.block_count) write_sums(first + i, before + counts[i]);
     }
-    if (thread == SCAN_GROUP - 1u) ranks[u_octree.block_count + gl_WorkGroupID.x] = through;
+    if (thread == SCAN_GROUP - 1u) write_sums(group_block(gl_WorkGroupID.x), through);
 }

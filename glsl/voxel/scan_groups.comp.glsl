@@ -7,17 +7,12 @@
 
 layout(local_size_x = 256) in;
 
-layout(std430) readonly buffer NodeBits { uint node_words[]; };
-// A rank a block, then a sum a group: see scan_blocks. Coherent: one thread reads what others wrote.
-layout(std430) coherent buffer Ranks { uvec2 ranks[]; };
 layout(std430) buffer State { OctreeState octree_state; };
-
-uvec2 rank_of_block(uint block) { return ranks[block] + ranks[u_octree.block_count + block / SCAN_BLOCKS]; }
 
 // Bricks before the first block of a level's grid.
 uint bricks_before_level(int level, uint total) {
     uint block = grid_first_block(level);
-    return block < u_octree.block_count ? rank_of_block(block).x : total;
+    return block < u_octree.block_count ? block_rank(block).x : total;
 }
 
 // Bricks before those of a tile's nodes: tiles and bricks stand in the same order.
@@ -26,12 +21,12 @@ uint bricks_before_tile(uint tile) {
     uint end = u_octree.block_count;
     while (end - block > 1u) {
         uint middle = (block + end) / 2u;
-        if (rank_of_block(middle).y <= tile) block = middle;
+        if (block_rank(middle).y <= tile) block = middle;
         else end = middle;
     }
-    uvec2 bits = uvec2(node_words[block * 2u], node_words[block * 2u + 1u]);
+    uvec2 bits = block_bits(block);
     uvec2 used = used_bytes(bits);
-    uvec2 rank = rank_of_block(block);
+    uvec2 rank = block_rank(block);
     for (uint before = rank.y; before < tile; ++before) {
         if (used.x != 0u) used.x &= used.x - 1u;
         else used.y &= used.y - 1u;
@@ -46,12 +41,12 @@ void main() {
     uint a_thread = (group_count + SCAN_GROUP - 1u) / SCAN_GROUP;
     uint first = thread * a_thread;
     uvec2 total = uvec2(0u);
-    for (uint i = first; i < min(first + a_thread, group_count); ++i) total += ranks[u_octree.block_count + i];
+    for (uint i = first; i < min(first + a_thread, group_count); ++i) total += block_sums(group_block(i));
     uvec2 through = group_inclusive_sum(thread, total);
     uvec2 before = through - total;
     for (uint i = first; i < min(first + a_thread, group_count); ++i) {
-        uvec2 sum = ranks[u_octree.block_count + i];
-        ranks[u_octree.block_count + i] = before;
+        uvec2 sum = block_sums(group_block(i));
+        write_sums(group_block(i), before);
         before += sum;
     }
     memoryBarrierBuffer();

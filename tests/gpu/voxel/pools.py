@@ -189,14 +189,14 @@ def sided_values(stage: Stage, pools: Pools) -> Array:
     first = stage.state["level_first"][stage.own_grid.coarsest_leaf]
     voxels = ((leaves - first)[:, None] * 8 + np.arange(8)).ravel()
     for axis in range(3):
-        for k, side in enumerate(("plus_side", "minus_side")):
+        for k, side in enumerate(("plus", "minus")):
             got = run_glsl(
                 stage.device,
                 ["lib/voxel.glsl"],
-                f"leaf_voxel(v, {axis}u).{side}",
+                f"leaf_sides(v).{side}[{axis}]",
                 {"v": voxels.astype(np.uint32)},
                 "vec4",
-                reads={**stage.octree.voxel_reads(), "Nodes": stage.octree.nodes},
+                reads=stage.octree.voxel_reads(),
                 params=stage.octree.params,
             )
             values[leaves, :, 2 * axis + k] = got.reshape(-1, 8, 4)

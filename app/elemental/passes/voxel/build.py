@@ -13,7 +13,7 @@ import numpy as np
 
 from elemental.core.layout import Block, layouts, pack
 from elemental.gpu.graph import Graph
-from elemental.gpu.refs import AnyBuffer, Ref
+from elemental.gpu.refs import AnyBuffer, BufferHandle
 from elemental.gpu.shaders import Compute
 from elemental.passes.voxel.octree import Octree, Survey
 
@@ -44,16 +44,16 @@ def state_offset(field: str, element: int = 0) -> int:
     return int(offset) + element * int(stride)
 
 
-def find_nodes(g: Graph, octree: Survey, fragments: AnyBuffer) -> dict[str, Ref]:
-    """Which points are occupied, which nodes exist, and the nodes' ranks, by GLSL name.
+def find_nodes(g: Graph, octree: Survey, fragments: AnyBuffer) -> BufferHandle:
+    """Which points are occupied, a bit each, and in the octree's blocks, which nodes exist.
 
     Leaves the totals and the arguments of later dispatches in the octree's state.
     """
     grid = octree.grid
+    blocks = {"NodeBlocks": octree.node_blocks}
     points = g.buffer("voxel.points", grid.point_block_count * BLOCK_BYTES)
-    node_bits = g.buffer("voxel.node_bits", grid.block_count * BLOCK_BYTES)
     g.clear_buffer(points)
-    g.clear_buffer(node_bits)
+    g.clear_buffer(octree.node_blocks)
     g.compute(
         MARK,
         reads={"State": octree.state, "Fragments": fragments, "Regions": octree.regions},
@@ -66,36 +66,21 @@ def find_nodes(g: Graph, octree: Survey, fragments: AnyBuffer) -> dict[str, Ref]
             REDUCE,
             f"reduce.{level}",
             reads={"Regions": octree.regions},
-            writes={"Points": points, "NodeBits": node_bits},
+            writes={"Points": points, **blocks},
             params={**octree.params, "OctreeLevel": level_params(level)},
             threads=grid.grid_blocks(level + 1),
         )
-    group_blocks = int(layouts().constant("SCAN_BLOCKS"))
-    groups = -(-grid.block_count // group_blocks)
-    ranks = g.buffer("voxel.ranks", (grid.block_count + groups) * BLOCK_BYTES)
-    g.compute(
-        SCAN_BLOCKS,
-        reads={"NodeBits": node_bits},
-        writes={"Ranks": ranks},
-        params=octree.params,
-        groups=groups,
-    )
-    g.compute(
-        SCAN_GROUPS,
-        reads={"NodeBits": node_bits},
-        writes={"Ranks": ranks, "State": octree.state},
-        params=octree.params,
-        groups=1,
-    )
-    return {"Points": points, "NodeBits": node_bits, "Ranks": ranks}
+    g.compute(SCAN_BLOCKS, writes=blocks, params=octree.params, groups=grid.scan_groups)
+    g.compute(SCAN_GROUPS, writes={**blocks, "State": octree.state}, params=octree.params, groups=1)
+    return points
 
 
 def build(g: Graph, octree: Octree, fragments: AnyBuffer) -> None:
     """Nodes, bricks and leaf attributes from the fragments."""
-    found = find_nodes(g, octree, fragments)
+    points = find_nodes(g, octree, fragments)
     g.compute(
         NODES,
-        reads={**found, "Regions": octree.regions},
+        reads={"Points": points, "NodeBlocks": octree.node_blocks, "Regions": octree.regions},
         writes={
             "State": octree.state,
             "Nodes": octree.nodes,
@@ -106,14 +91,11 @@ def build(g: Graph, octree: Octree, fragments: AnyBuffer) -> None:
         threads=octree.grid.block_count,
     )
     g.compute(LISTS, writes={"State": octree.state}, params=octree.params, groups=1)
-    average(g, octree, fragments, found)
+    average(g, octree, fragments)
 
 
-def average(g: Graph, octree: Octree, fragments: AnyBuffer, found: dict[str, Ref]) -> None:
-    """Leaf attributes: the averages of each voxel's fragments, summed in integers.
-
-    ``found`` is what `find_nodes` returned.
-    """
+def average(g: Graph, octree: Octree, fragments: AnyBuffer) -> None:
+    """Leaf attributes: the averages of each voxel's fragments, summed in integers."""
     # Voxels without fragments stay as they are now.
     g.clear_buffer(octree.attributes)
     g.clear_buffer(octree.radiance)
@@ -122,8 +104,7 @@ def average(g: Graph, octree: Octree, fragments: AnyBuffer, found: dict[str, Ref
         reads={
             "State": octree.state,
             "Regions": octree.regions,
-            "NodeBits": found["NodeBits"],
-            "Ranks": found["Ranks"],
+            "NodeBlocks": octree.node_blocks,
         },
         writes={"Fragments": fragments, "Attributes": octree.attributes},
         params=octree.params,

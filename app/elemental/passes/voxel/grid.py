@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from elemental.core.layout import layouts
 from elemental.scene.model import Region
 
 REGION_SIDE = 8
@@ -79,6 +80,11 @@ class Grid:
         return int(self.region_levels.min())
 
     @property
+    def one_leaf_level(self) -> bool:
+        """Whether all regions have the finest."""
+        return self.coarsest_leaf == self.leaf_level
+
+    @property
     def top_level(self) -> int:
         """Levels up to here are dense and cover the whole cube, deeper ones the scene alone."""
         return self.leaf_level - DENSE_LEVELS_BELOW_LEAF
@@ -106,6 +112,16 @@ class Grid:
     def block_count(self) -> int:
         """64-node blocks of all levels together."""
         return self.first_block(self.leaf_level + 1)
+
+    @property
+    def scan_groups(self) -> int:
+        """Groups of blocks whose sums the prefix sums keep."""
+        return -(-self.block_count // int(layouts().constant("SCAN_BLOCKS")))
+
+    @property
+    def node_block_count(self) -> int:
+        """64-node blocks, and one more for each group of them (lib/node_blocks.glsl)."""
+        return self.block_count + self.scan_groups
 
     @property
     def point_block_count(self) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING
 
 from elemental.core.layout import Block
@@ -17,11 +18,14 @@ if TYPE_CHECKING:
 
 LIGHT = Compute("voxel/light.comp.glsl")
 LIGHT_AND_GATHER = Compute("voxel/light.comp.glsl", defines={"GATHER": 1})
-FILTER = Compute("voxel/filter.comp.glsl")
-COMPRESS = Compute("voxel/compress.comp.glsl")
-COMPRESS_LEAVES = Compute("voxel/compress_leaves.comp.glsl")
-
 SIDED_BYTES_A_BRICK = 8 * 6 * 8
+
+
+@cache
+def reader(path: str, kind: str, one_leaf_level: bool) -> Compute:
+    """A shader that reads "leaf" or "filtered" voxels, or "either" (lib/sided_voxel.glsl)."""
+    level = int(one_leaf_level)
+    return Compute(path, {"VOXEL_KIND": f"{kind.upper()}_VOXELS", "ONE_LEAF_LEVEL": level})
 
 
 def light_voxels(
@@ -57,13 +61,18 @@ def filter_levels(g: Graph, octree: Octree) -> BufferHandle:
     """Six-sided values of every level above the finest, from the finest up: 8 x 6 half4 a brick."""
     sided = g.buffer("voxel.sided", max(octree.capacity.interior, 1) * SIDED_BYTES_A_BRICK)
     g.clear_buffer(sided)
-    for level in range(octree.grid.leaf_level - 1, -1, -1):
+    grid = octree.grid
+    for level in range(grid.leaf_level - 1, -1, -1):
+        finer = level + 1
+        kind = "filtered" if finer < grid.coarsest_leaf else "either"
+        if finer == grid.leaf_level:
+            kind = "leaf"
         g.compute(
-            FILTER,
+            reader("voxel/filter.comp.glsl", kind, grid.one_leaf_level),
             f"filter.{level}",
             reads={
                 **octree.voxel_reads(),
-                "Nodes": octree.nodes,
+                "NodeBlocks": octree.node_blocks,
                 "VoxelList": octree.voxel_list,
             },
             writes={"Sided": sided},
@@ -78,18 +87,27 @@ def compress(g: Graph, octree: Octree, sided: BufferHandle) -> None:
     atlases = (octree.atlas, octree.leaf_colors, octree.leaf_normals)
     for atlas in atlases:
         g.clear_texture(atlas)
-    nodes = {"Nodes": octree.nodes, "NodeWords": octree.nodes}
+    grid = octree.grid
+    reads = {**octree.voxel_reads(), "NodeBlocks": octree.node_blocks, "Sided": sided}
     g.compute(
-        COMPRESS,
-        reads={**octree.voxel_reads(), "Sided": sided},
-        writes={**nodes, "u_atlas": octree.atlas},
+        reader(
+            "voxel/compress.comp.glsl",
+            "filtered" if grid.one_leaf_level else "either",
+            grid.one_leaf_level,
+        ),
+        reads=reads,
+        writes={"ScaledNodes": octree.nodes, "u_atlas": octree.atlas},
         params=octree.params,
         indirect=(octree.state, state_offset("interior_bricks")),
     )
     g.compute(
-        COMPRESS_LEAVES,
-        reads={**octree.voxel_reads(), "Sided": sided},
-        writes={**nodes, "u_colors": octree.leaf_colors, "u_normals": octree.leaf_normals},
+        reader("voxel/compress_leaves.comp.glsl", "leaf", grid.one_leaf_level),
+        reads=reads,
+        writes={
+            "ScaledNodes": octree.nodes,
+            "u_colors": octree.leaf_colors,
+            "u_normals": octree.leaf_normals,
+        },
         params=octree.params,
         indirect=(octree.state, state_offset("leaf_bricks")),
     )

@@ -21,6 +21,8 @@ LEAF_TEXELS = (3, 3, 3)
 """A brick of the finest level, in the atlas of colours and in that of normals."""
 ATLAS_SIDES_LOG2 = (5, 6, 7)
 """Bricks a row of the atlas, as powers of two, the smallest that fits is taken."""
+NODE_BLOCK_BYTES = 16
+"""64 bits, bricks and tiles before them: lib/node_blocks.glsl."""
 TEXTURE_3D_MAX = 2048
 """The smallest GL_MAX_3D_TEXTURE_SIZE that OpenGL 4.3 allows."""
 ACCUMULATOR_MAX = 65535.0
@@ -138,6 +140,9 @@ class Survey:
         )
         self.state = device.buffer("octree.state", _struct_bytes("OctreeState"), category=CATEGORY)
         self.empty_state = device.buffer("octree.empty_state", _empty_state(), category=CATEGORY)
+        self.node_blocks = device.buffer(
+            "octree.node_blocks", grid.node_block_count * NODE_BLOCK_BYTES, category=CATEGORY
+        )
         none = Atlas.fit(1, LEAF_TEXELS)
         self.params: dict[str, Block] = {"Octree": self._pack(none, none)}
 
@@ -167,7 +172,7 @@ class Survey:
 
     def release(self) -> None:
         """Free what it holds on the device."""
-        for buffer in (self.regions, self.state, self.empty_state):
+        for buffer in (self.regions, self.state, self.empty_state, self.node_blocks):
             buffer.release()
 
 
@@ -200,8 +205,7 @@ class Octree(Survey):
     def _lit_voxels(self) -> int:
         """How many leaf voxels can be occupied. Coarser regions' are by finer neighbours, too."""
         voxels = self.capacity.leaves * 8
-        uniform = self.grid.coarsest_leaf == self.grid.leaf_level
-        return min(voxels, self.capacity.fragments) if uniform else voxels
+        return min(voxels, self.capacity.fragments) if self.grid.one_leaf_level else voxels
 
     def tracing_reads(self) -> dict[str, Ref]:
         """What lib/cone.glsl binds."""
@@ -213,7 +217,7 @@ class Octree(Survey):
         }
 
     def voxel_reads(self) -> dict[str, Ref]:
-        """What lib/voxel.glsl binds, but for the nodes."""
+        """What lib/voxel.glsl binds."""
         return {
             "Bricks": self.bricks,
             "State": self.state,

@@ -1,0 +1,47 @@
+// The nodes' bits, and with each block of 64 how many bricks and tiles stand before it: what a build
+// leaves behind so that a cell's brick is found without a descent.
+
+#include "lib/node_bits.glsl"
+
+// Four words a block: bits, bricks before, tiles before; these count from the start of a group of
+// SCAN_BLOCKS. After the blocks four words a group: two unused, bricks and tiles before the group.
+// NODE_BLOCKS_ACCESS: coherent for who writes them.
+#ifndef NODE_BLOCKS_ACCESS
+#define NODE_BLOCKS_ACCESS readonly
+#endif
+layout(std430) NODE_BLOCKS_ACCESS buffer NodeBlocks { uint node_blocks[]; };
+
+const uint BLOCK_WORDS = 4u;
+
+uvec2 block_bits(uint block) {
+    return uvec2(node_blocks[block * BLOCK_WORDS], node_blocks[block * BLOCK_WORDS + 1u]);
+}
+
+uvec2 block_sums(uint block) {
+    return uvec2(node_blocks[block * BLOCK_WORDS + 2u], node_blocks[block * BLOCK_WORDS + 3u]);
+}
+
+// Where a group's own sums stand, as the number of a block.
+uint group_block(uint group) { return u_octree.block_count + group; }
+
+// Bricks and tiles before a block.
+uvec2 block_rank(uint block) { return block_sums(block) + block_sums(group_block(block / SCAN_BLOCKS)); }
+
+// Word of the node with this code in the grid of its level; its bit is cell_bit(code).
+uint node_word(int level, uint code) {
+    return (grid_first_block(level) + (code >> 6)) * BLOCK_WORDS + ((code >> 5) & 1u);
+}
+
+const uint NO_BRICK = 0xffffffffu;
+
+// The brick of a cell's node, or NO_BRICK; `brick_count` were kept.
+uint brick_of_node(ivec3 cell, int level, uint brick_count) {
+    if (!in_grid(level, cell)) return NO_BRICK;
+    uint code = grid_code(level, uvec3(cell));
+    uint block = grid_first_block(level) + (code >> 6);
+    uvec2 bits = block_bits(block);
+    uint word = (code & 32u) == 0u ? bits.x : bits.y;
+    if ((word & cell_bit(code)) == 0u) return NO_BRICK;
+    uint brick = block_rank(block).x + bit_count64(bits & bits_below(code & 63u));
+    return brick < brick_count ? brick : NO_BRICK;
+}
