@@ -21,6 +21,8 @@ import numpy as np
 
 from elemental.core.errors import InputError
 from elemental.core.images import read_environment
+from elemental.scene.deform import posed
+from elemental.scene.evaluate import placed_camera
 from elemental.scene.model import FloatArray
 from elemental.session import Stage, Viewpoint, set_stage
 
@@ -45,6 +47,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--set", action="append", default=[], metavar="KEY=VALUE", help="a setting, repeatable"
     )
+    parser.add_argument("--time", type=float, default=0.0, metavar="S", help="scene time, s (0)")
     parser.add_argument("--spp", type=int, default=512, help="samples a pixel (512)")
     parser.add_argument("--ours", type=Path, metavar="FILE.exr", help="compare this picture")
     parser.add_argument(
@@ -63,7 +66,7 @@ def shoot(words: argparse.Namespace, stage: Stage) -> FloatArray:
     with tempfile.TemporaryDirectory() as folder:
         output = Path(folder) / "ours.exr"
         command = [sys.executable, "-m", "elemental", "shot", words.scene, "-o", str(output)]
-        command += ["--view", "scene_color", "--size", words.size]
+        command += ["--view", "scene_color", "--size", words.size, "--time", str(words.time)]
         if words.eye is not None:
             for flag, point in (("--eye", words.eye), ("--target", words.target)):
                 command += [flag, ",".join(map(str, point))]
@@ -115,6 +118,8 @@ def run(words: argparse.Namespace) -> int:
     width, height = (int(side) for side in words.size.split("x"))
     viewpoint = Viewpoint(words.camera, words.eye, words.target, words.fov)
     stage = set_stage(words.scene, words.set, viewpoint, (width, height))
+    camera = placed_camera(stage.scene, stage.camera, words.time)
+    stage = replace(stage, camera=camera, scene=posed(stage.scene, words.time))
     settings = stage.settings
     bounces = int(settings["gi.bounces"]) if settings["gi.enabled"] else 0
     job = Job((width, height), words.spp, bounces, float(settings["sky.intensity"]))
@@ -125,6 +130,7 @@ def run(words: argparse.Namespace) -> int:
         "scene": words.scene,
         "size": words.size,
         "camera": stage.camera.name,
+        "time_s": words.time,
         "settings": words.set,
         "spp": words.spp,
         "bounces": bounces,
