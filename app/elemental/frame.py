@@ -22,6 +22,7 @@ from elemental.passes.cone_trace.area_lights import trace_area_lights
 from elemental.passes.cone_trace.diffuse import combine_diffuse, trace_diffuse
 from elemental.passes.cone_trace.interleave import SUB_IMAGES
 from elemental.passes.cone_trace.specular import SpecularCounters, trace_specular
+from elemental.passes.cone_trace.steps import STEP_VIEWS, step_view
 from elemental.passes.forward import draw_translucent
 from elemental.passes.gbuffer import GBuffer, draw_gbuffer
 from elemental.passes.post.fxaa import fxaa
@@ -36,7 +37,7 @@ from elemental.passes.voxel import sizing
 from elemental.passes.voxel.grid import Grid
 from elemental.passes.voxel.lighting import VoxelLighting
 from elemental.passes.voxel.octree import Octree
-from elemental.passes.voxel.view import voxel_view
+from elemental.passes.voxel.view import VOXEL_VIEWS, voxel_view
 from elemental.scene.area_lights import AreaLight, area_lights, followed
 from elemental.scene.deform import posed
 from elemental.scene.evaluate import Pose, evaluate
@@ -53,13 +54,14 @@ VIEWS: Mapping[str, str] = {
     "diffuse_gi": "indirect irradiance / pi, linear",
     "specular_gi": "indirect radiance along the mirrored eye vector, linear",
     "specular_traced": "specular cones, false colour: interpolated, traced first, traced",
-    "voxels": "the octree's voxels at the level of voxels.level, linear",
+    **STEP_VIEWS,
+    **VOXEL_VIEWS,
 }
 """View name -> help."""
 
 LINEAR_VIEWS = frozenset({"scene_color", "diffuse_gi", "specular_gi", "voxels", *LIGHT_VIEWS})
 SPECULAR_VIEWS = frozenset({"specular_gi", "specular_traced"})
-OCTREE_VIEWS = frozenset({"diffuse_gi", "voxels", *SPECULAR_VIEWS})
+OCTREE_VIEWS = frozenset({"diffuse_gi", *SPECULAR_VIEWS, *STEP_VIEWS, *VOXEL_VIEWS})
 
 
 @dataclass
@@ -187,8 +189,9 @@ class Renderer:
         if voxels is not None:
             light_key = (shadows.light_key, sky.key)
             octree = voxels.update(g, shadows, sky, self._area_block, light_key, s["gi.bounces"])
-        if view_name == "voxels" and octree is not None:
-            return voxel_view(g, view, octree, self.size, s["voxels.level"])
+        if view_name in VOXEL_VIEWS and octree is not None:
+            level, side = s["voxels.level"], s["voxels.side"]
+            return voxel_view(g, view, octree, self.size, view_name, level, side)
 
         gb = draw_gbuffer(g, view, self._meshes, self.size)
         if view_name in CHANNELS:
@@ -197,6 +200,9 @@ class Renderer:
             return light_view(g, view, gb, shadows, view_name)
         diffuse_gi = specular = None
         if octree is not None:
+            if view_name in STEP_VIEWS:
+                split, block = self._cone_split, self._area_block
+                return step_view(g, view, gb, octree, sky, block, split, view_name)
             diffuse_gi, broad_gi = self._diffuse(g, view, gb, octree, sky)
             if view_name == "diffuse_gi":
                 return diffuse_gi
@@ -232,11 +238,16 @@ class Renderer:
         image = tonemap(g, view, scene_color)
         return fxaa(g, view, image) if s["fxaa.enabled"] else image
 
+    @property
+    def _cone_split(self) -> int:
+        """Narrower cones that each diffuse cone is traced as."""
+        return int(self.settings["gi.diffuse_cones"]) // SUB_IMAGES
+
     def _diffuse(
         self, g: Graph, view: Block, gb: GBuffer, octree: Octree, sky: Sky
     ) -> tuple[TextureHandle, TextureHandle]:
         """(irradiance / pi, radiance in a broad specular lobe)."""
-        split = self.settings["gi.diffuse_cones"] // SUB_IMAGES
+        split = self._cone_split
         radiance = trace_diffuse(g, view, gb, octree, sky, split)
         block = self._area_block
         area = None

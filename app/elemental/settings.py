@@ -190,8 +190,11 @@ _TABLE = (
         "reach of directional shadows from the camera; 0 takes the scene's size",
         unit="m", lo=0, hi=100000,
     ),
-    Setting("voxels.level", "int", 0, "octree level that the view 'voxels' shows; 0 is the leaves",
+    Setting("voxels.level", "int", 0, "level above the leaves that the views 'voxels' and 'occupancy' show",
             unit="level", lo=0, hi=9),
+    Setting("voxels.side", "choice", "all",
+            "side of the voxels that the view 'voxels' shows; all: those towards the eye",
+            choices=("all", "+x", "-x", "+y", "-y", "+z", "-z")),
 )  # fmt: skip
 
 SETTINGS: Mapping[str, Setting] = MappingProxyType({setting.key: setting for setting in _TABLE})
