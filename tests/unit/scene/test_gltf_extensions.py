@@ -60,6 +60,32 @@ def test_draco(tmp_path: Path) -> None:
     assert scene.warnings == []
 
 
+def test_a_skin_of_compressed_vertices(tmp_path: Path) -> None:
+    """A sphere whose right half hangs on the second joint, which stands 3 higher than in the bind
+    pose."""
+    positions, indices = shapes.sphere()
+    right = positions[:, :1] > 0.0
+    joints = np.concatenate([right, np.zeros((len(right), 3))], 1).astype(np.uint16)
+    weights = np.tile(np.array([1, 0, 0, 0], np.float32), (len(right), 1))
+    encoded = DracoPy.encode(
+        positions, indices.reshape(-1, 3), quantization_bits=14,
+        generic_attributes={7: joints, 8: weights},
+    )  # fmt: skip
+    builder = GltfBuilder()
+    builder.extend(DRACO, required=True)
+    ids = {a["attribute_type"]: a["unique_id"] for a in DracoPy.decode(encoded).attributes}
+    names = {"POSITION": ids[0], "JOINTS_0": 7, "WEIGHTS_0": 8}
+    layout = {"componentType": 5126, "count": len(positions), "type": "VEC4"}
+    attributes = {name: builder.append("accessors", layout) for name in names}
+    extension = {"bufferView": builder.view(encoded), "attributes": names}
+    primitive = {"attributes": attributes, "extensions": {DRACO: extension}}
+    skin = builder.skin([builder.node(), builder.node(translation=[0, 3, 0])])
+    builder.node(mesh=builder.mesh(primitive), skin=skin)
+    shape = builder.load(tmp_path).meshes[0]
+    assert shape.positions[shape.positions[:, 0] > 0.05][:, 1].min() == pytest.approx(2, abs=0.02)
+    assert shape.positions[shape.positions[:, 0] < -0.05][:, 1].max() == pytest.approx(1, abs=0.02)
+
+
 def test_draco_without_its_library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     real_import = builtins.__import__
 

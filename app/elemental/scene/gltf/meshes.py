@@ -117,7 +117,11 @@ class Meshes:
             uv0=arrays["TEXCOORD_0"],
             uv1=arrays["TEXCOORD_1"],
             colors=_color_bytes(arrays["COLOR_0"]),
-            influences=read_influences(attributes, self._accessors, len(positions)),
+            influences=read_influences(
+                attributes,
+                lambda name: self._read_attribute(attributes, source, name, (4,)),
+                len(positions),
+            ),
             morphs=read_morphs(self._document, field, self._accessors, len(positions)),
         )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -71,9 +71,12 @@ class Skins:
         return DeclaredSkin(field, joints, matrices)
 
 
-def read_influences(attributes: Field, accessors: Accessors, count: int) -> Influences | None:
+def read_influences(
+    attributes: Field, read: Callable[[str], FloatArray | None], count: int
+) -> Influences | None:
     """What a primitive's vertices hang on; None where it has no JOINTS_0.
 
+    `read` gives an attribute of four components by its name, compressed or not.
     Weights are brought to a sum of 1; a vertex without any hangs on its first joint.
     """
     sets = [k for k in range(MOST_SETS) if attributes.find(f"JOINTS_{k}") is not None]
@@ -82,7 +85,7 @@ def read_influences(attributes: Field, accessors: Accessors, count: int) -> Infl
     if attributes.find(f"JOINTS_{MOST_SETS}") is not None:
         attributes.warn("more than eight joints a vertex are not supported; the others are ignored")
     joints, weights = (
-        np.concatenate([_attribute(attributes, f"{kind}_{k}", accessors, count) for k in sets], 1)
+        np.concatenate([_attribute(attributes, f"{kind}_{k}", read, count) for k in sets], 1)
         for kind in ("JOINTS", "WEIGHTS")
     )
     if not np.isfinite(weights).all() or weights.min() < 0.0:
@@ -108,8 +111,11 @@ def check_joints(influences: Influences, skin: DeclaredSkin, primitive: Field) -
         )
 
 
-def _attribute(attributes: Field, name: str, accessors: Accessors, count: int) -> FloatArray:
-    values = accessors.floats(attributes.need(name), (4,))
+def _attribute(
+    attributes: Field, name: str, read: Callable[[str], FloatArray | None], count: int
+) -> FloatArray:
+    reference, values = attributes.need(name), read(name)
+    assert values is not None, "the attribute is there"
     if len(values) != count:
-        raise attributes.need(name).error(f"has {len(values)} vertices, POSITION {count}")
+        raise reference.error(f"has {len(values)} vertices, POSITION {count}")
     return values
