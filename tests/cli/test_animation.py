@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +15,11 @@ import pytest
 from numpy.typing import NDArray
 
 import shapes
-from cli.process import elemental
+from cli.process import APP, elemental
+from cli.xvfb import display
 from gltf_builder import GltfBuilder
+
+__all__ = ["display"]
 
 SMALL = ("--size", "48x32", "--set", "gi.resolution=64", "--set", "shadow.resolution=256")
 LAMP = """
@@ -131,6 +137,44 @@ def test_a_benchmark_moves_the_scene_unless_its_rate_is_0(tmp_path: Path) -> Non
         passes.append({entry["name"].split(".")[0] for entry in report["passes"]})
     assert "voxelize" in passes[0]
     assert not passes[1] & {"voxelize", "shadow"}
+
+
+WINDOW = """
+from elemental.session import Viewpoint, set_stage
+from elemental.ui.app import App, Run
+from elemental.ui.window import Window
+
+words = Run("stage.glb", (96, 64), ["gi.enabled=false", "shadow.resolution=256"], False, None)
+stage = set_stage(words.scene, words.assignments, Viewpoint(), words.size)
+window = Window(words.size, "", words.fullscreen)
+app = App(window, stage, words)
+
+def moved():
+    app.clock.advance(0.1)
+    app.draw(window.framebuffer_size())
+    return len(app.renderer._meshes.changes)
+
+print(*[moved() for _ in range(3)][1:])
+app.act("pause")
+print(*[moved() for _ in range(2)])
+app.act("step")
+print(moved())
+app.act("camera.pick", 1)
+sinking = app.fly.camera().world_from_view[1, 3]
+print(1.0 < sinking < 4.0)
+app.release()
+"""
+
+
+def test_a_window_plays_and_pauses(tmp_path: Path, display: str) -> None:
+    """One thing moves in each frame, none while paused; a camera is where it is by then."""
+    environment = os.environ | {"PYTHONPATH": str(APP), "DISPLAY": display}
+    result = subprocess.run(
+        [sys.executable, "-c", WINDOW], cwd=tmp_path, env=environment,
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert result.stderr == ""
+    assert result.stdout.splitlines() == ["1 1", "0 0", "1", "True"]
 
 
 def test_broken_animations_are_refused_in_one_line(tmp_path: Path) -> None:
