@@ -13,11 +13,11 @@ struct Surroundings {
     uint occupied;  // a bit for each point that holds anything
 };
 
-// The bricks of each thread's eight cells. In an array of its own, whose index varies, they would
-// not stay in registers.
-shared uint cell_brick[BRICK_GROUP * 8u];
+// The bricks of the eight cells. A thread's own: as shared arrays these and the filter's would leave
+// room for few threads, and llvmpipe reads them slower.
+uint cell_brick[8];
 #if ONE_LEAF_LEVEL == 0
-shared int cell_level[BRICK_GROUP * 8u];  // coarser than the points' beside a coarser region
+int cell_level[8];  // coarser than the points' beside a coarser region
 #endif
 
 // Occupied points of a cell, a byte, as bits of the 27; those outside fall off.
@@ -31,16 +31,16 @@ uint bits_of_cell(uint points, uvec3 cell, uint first_point) {
     return at < 0 ? spread >> uint(-at) : spread << uint(at);
 }
 
-Surroundings surroundings(uint thread, ivec3 lowest_cell, int level, uint first_point) {
+Surroundings surroundings(ivec3 lowest_cell, int level, uint first_point) {
     Surroundings s = Surroundings(uvec3(lowest_cell), level, first_point, 0u);
     for (uint i = 0u; i < 8u; ++i) {
         uvec3 cell = uvec3(i, i >> 1, i >> 2) & 1u;
         int reached;
         uint brick = brick_of_cell(lowest_cell + ivec3(cell), level, reached);
         s.occupied |= bits_of_cell(points_of_cell(brick, reached, level), cell, first_point);
-        cell_brick[thread * 8u + i] = brick;
+        cell_brick[i] = brick;
 #if ONE_LEAF_LEVEL == 0
-        cell_level[thread * 8u + i] = reached;
+        cell_level[i] = reached;
 #endif
     }
     return s;
@@ -50,9 +50,9 @@ uvec3 place_of_point(uint i) { return uvec3(i % 3u, (i / 3u) % 3u, i / 9u); }
 
 // The brick that owns a point, by its place among the 27, and which of its eight it is. A coarser
 // neighbour region lends the nearest point that it has.
-uint owner_of_point(Surroundings s, uint thread, uvec3 place, out uint voxel) {
+uint owner_of_point(Surroundings s, uvec3 place, out uint voxel) {
     uvec3 cell = (place + s.first_point) >> 1u;
-    uint number = thread * 8u + (cell.x | (cell.y << 1) | (cell.z << 2));
+    uint number = cell.x | (cell.y << 1) | (cell.z << 2);
     uvec3 point = s.lowest_cell * 2u + s.first_point + place;
 #if ONE_LEAF_LEVEL == 0
     point >>= uint(s.level - cell_level[number]);

@@ -17,13 +17,12 @@ layout(rgba8) writeonly uniform image3D u_atlas;
 void main() {
     uint brick = linear_thread_id();
     if (brick >= octree_state.interior_count) return;
-    uint thread = gl_LocalInvocationID.x;
     uint cell = bricks[brick].cell;
-    Surroundings points = surroundings(thread, ivec3(unpack_cell(cell)), unpack_cell_level(cell), 0u);
+    Surroundings points = surroundings(ivec3(unpack_cell(cell)), unpack_cell_level(cell), 0u);
     vec3 maximum = vec3(0.0);
     for (uint left = points.occupied; left != 0u; left &= left - 1u) {
         uint voxel;
-        uint owner = owner_of_point(points, thread, place_of_point(uint(findLSB(left))), voxel);
+        uint owner = owner_of_point(points, place_of_point(uint(findLSB(left))), voxel);
         Sides sides = sides_of_voxel(owner, voxel);
         for (int axis = 0; axis < 3; ++axis) {
             maximum = max(maximum, max(sides.plus[axis].rgb, sides.minus[axis].rgb));
@@ -36,7 +35,7 @@ void main() {
     for (uint left = points.occupied; left != 0u; left &= left - 1u) {
         uvec3 place = place_of_point(uint(findLSB(left)));
         uint voxel;
-        uint owner = owner_of_point(points, thread, place, voxel);
+        uint owner = owner_of_point(points, place, voxel);
         Sides sides = sides_of_voxel(owner, voxel);
         for (int axis = 0; axis < 3; ++axis) {
             ivec3 at = base + ivec3(place) + ivec3(0, 0, axis * 2 * int(BRICK_SIDE));

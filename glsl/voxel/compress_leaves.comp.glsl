@@ -14,13 +14,12 @@ void main() {
     uint slot = linear_thread_id();
     uint brick = octree_state.interior_count + slot;
     if (brick >= octree_state.brick_count) return;
-    uint thread = gl_LocalInvocationID.x;
     uint cell = bricks[brick].cell;
-    Surroundings points = surroundings(thread, ivec3(unpack_cell(cell)), unpack_cell_level(cell), 0u);
+    Surroundings points = surroundings(ivec3(unpack_cell(cell)), unpack_cell_level(cell), 0u);
     vec3 maximum = vec3(0.0);
     for (uint left = points.occupied; left != 0u; left &= left - 1u) {
         uint voxel;
-        uint owner = owner_of_point(points, thread, place_of_point(uint(findLSB(left))), voxel);
+        uint owner = owner_of_point(points, place_of_point(uint(findLSB(left))), voxel);
         maximum = max(maximum, unpack_half4(radiance[leaf_slot(owner) * BRICK_VOXELS + voxel]).rgb);
     }
     float inverse_scale = store_multiplier(brick, largest(maximum));
@@ -30,7 +29,7 @@ void main() {
     for (uint left = points.occupied; left != 0u; left &= left - 1u) {
         uvec3 place = place_of_point(uint(findLSB(left)));
         uint voxel;
-        uint owner = owner_of_point(points, thread, place, voxel);
+        uint owner = owner_of_point(points, place, voxel);
         uint index = leaf_slot(owner) * BRICK_VOXELS + voxel;
         vec4 value = unpack_half4(radiance[index]);
         vec3 normal = unpackSnorm4x8(attributes[index].normal).xyz;

@@ -14,16 +14,37 @@
 
 layout(local_size_x = 64) in;
 
-// The opacities along the axes of each thread's 27 points, as half floats, where they hold anything.
-shared uvec2 opacities[BRICK_GROUP * 27u];
+// The opacities of the 27 points, where they hold anything: a leaf's is the same along all axes; else
+// half floats.
+#if VOXEL_KIND == LEAF_VOXELS
+float opacities[27];
+#else
+uvec2 opacities[27];
+#endif
+
+void keep_opacity(uint number, vec3 along) {
+#if VOXEL_KIND == LEAF_VOXELS
+    opacities[number] = along.x;
+#else
+    opacities[number] = uvec2(packHalf2x16(along.xy), packHalf2x16(along.zz));
+#endif
+}
+
+float kept_opacity(uint number, int axis) {
+#if VOXEL_KIND == LEAF_VOXELS
+    return opacities[number];
+#else
+    uvec2 code = opacities[number];
+    return axis == 2 ? unpackHalf2x16(code.y).x : unpackHalf2x16(code.x)[axis];
+#endif
+}
 
 // What a point lets through, that is `steps` further along an axis than point i.
-float let_through(uint thread, uint occupied, uint i, int axis, int steps) {
+float let_through(uint occupied, uint i, int axis, int steps) {
     const ivec3 stride = ivec3(1, 3, 9);
     uint point = uint(int(i) + steps * stride[axis]);
     if ((occupied & (1u << point)) == 0u) return 1.0;
-    uvec2 code = opacities[thread * 27u + point];
-    return 1.0 - (axis == 2 ? unpackHalf2x16(code.y).x : unpackHalf2x16(code.x)[axis]);
+    return 1.0 - kept_opacity(point, axis);
 }
 
 // Half of a slab: two halves in a row are as opaque as the whole, and let through the square root.
@@ -40,15 +61,13 @@ void main() {
     uvec3 own_cell = unpack_cell(bricks[voxel / BRICK_VOXELS].cell);
     uint octant = voxel % BRICK_VOXELS;
     ivec3 point = ivec3(own_cell * 2u + (uvec3(octant, octant >> 1, octant >> 2) & 1u));
-    uint thread = gl_LocalInvocationID.x;
     // The finer lattice has this voxel at 2 point, between its cells point - 1 and point.
-    Surroundings around = surroundings(thread, point - 1, level + 1, 1u);
+    Surroundings around = surroundings(point - 1, level + 1, 1u);
     for (uint left = around.occupied; left != 0u; left &= left - 1u) {
         uint i = uint(findLSB(left));
         uint finer;
-        uint brick = owner_of_point(around, thread, place_of_point(i), finer);
-        vec3 opacity = opacity_of_voxel(brick, finer);
-        opacities[thread * 27u + i] = uvec2(packHalf2x16(opacity.xy), packHalf2x16(opacity.zz));
+        uint brick = owner_of_point(around, place_of_point(i), finer);
+        keep_opacity(i, opacity_of_voxel(brick, finer));
     }
 
     vec4 plus[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));  // as viewers on the + sides see it
@@ -57,15 +76,15 @@ void main() {
         uint i = uint(findLSB(left));
         uvec3 place = place_of_point(i);
         uint finer;
-        uint brick = owner_of_point(around, thread, place, finer);
+        uint brick = owner_of_point(around, place, finer);
         Sides sides = sides_of_voxel(brick, finer);
         vec3 tent = vec3(0.5) - 0.25 * vec3(notEqual(place, uvec3(1u)));
         vec3 share = tent.yzx * tent.zxy;
         for (int axis = 0; axis < 3; ++axis) {
             // The other two of the column: an end, of which half counts, and the middle or other end.
             int at = int(place[axis]) - 1;
-            float end = sqrt(let_through(thread, around.occupied, i, axis, at == 0 ? 1 : -2 * at));
-            float other = let_through(thread, around.occupied, i, axis, at == 0 ? -1 : -at);
+            float end = sqrt(let_through(around.occupied, i, axis, at == 0 ? 1 : -2 * at));
+            float other = let_through(around.occupied, i, axis, at == 0 ? -1 : -at);
             if (at == 0) {
                 plus[axis] += share[axis] * end * sides.plus[axis];
                 minus[axis] += share[axis] * sqrt(other) * sides.minus[axis];

@@ -1,0 +1,77 @@
+# GI-08 GI-09
+"""A voxel above the leaves is what its 27 finer ones say, column by column, side by side."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from gpu.voxel.pools import ABSENT, Pools, leaf_values
+from gpu.voxel.stage import Stage
+
+Array = npt.NDArray[Any]
+OCTANTS = np.arange(8)[:, None] >> np.arange(3) & 1
+TENT = np.array([0.25, 0.5, 0.25])
+
+
+def leaf_sides(stage: Stage) -> Array:
+    """(S, 8, 6, 4) what the sides of leaf voxels show."""
+    radiance, normal = leaf_values(stage)
+    squared = (normal**2).sum(axis=-1)[..., None]
+    cosine = normal / np.sqrt(np.maximum(squared, 1e-6))
+    cosines = np.stack([cosine, -cosine], axis=-1).reshape(*cosine.shape[:2], 6)
+    certainty = np.minimum(4 * squared, 1)
+    shown = 1 + certainty * (np.clip(1 + np.sqrt(3) * cosines, 0, 1) - 1)
+    sides = np.repeat(radiance[:, :, None], 6, axis=2)
+    sides[..., :3] *= shown[..., None]
+    return sides
+
+
+def over(front: Array, back: Array) -> Array:
+    return front + (1 - front[..., 3:]) * back
+
+
+def half(slab: Array) -> Array:
+    """Two of these in a row are as opaque as the slab."""
+    opacity = 1 - np.sqrt(1 - slab[..., 3:])
+    return np.asarray(slab * (opacity / np.maximum(slab[..., 3:], 1e-6)))
+
+
+def filtered(around: Array) -> Array:
+    """(N, 6, 4) from (N, 3, 3, 3, 6, 4) by [x, y, z, side]."""
+    sides = []
+    for side in range(6):
+        along = np.moveaxis(around[..., side, :], 1 + side // 2, 1)
+        low, middle, high = half(along[:, 0]), along[:, 1], half(along[:, 2])
+        front, back = (low, high) if side % 2 else (high, low)
+        columns = over(front, over(middle, back))
+        sides.append(np.einsum("nijc,i,j->nc", columns, TENT, TENT))
+    return np.stack(sides, axis=1)
+
+
+@pytest.mark.parametrize("mip", [1, 2, 3])
+def test_filtered_voxels_are_what_surrounds_them(jumbled: Stage, mip: int) -> None:
+    pools, level = Pools.read(jumbled), jumbled.own_grid.leaf_level - mip
+    finer, first = jumbled.sided, 0
+    if mip == 1:
+        finer, first = leaf_sides(jumbled), int(jumbled.state["level_first"][level + 1])
+    bricks = np.flatnonzero(pools.level == level)
+    bricks, octants = (part.ravel() for part in np.meshgrid(bricks, np.arange(8), indexing="ij"))
+    held = pools.points[bricks] >> octants & 1 == 1
+    bricks, octants = bricks[held], octants[held]
+    points = 4 * pools.cell[bricks] + 2 * OCTANTS[octants]  # on the finer lattice
+    around = np.zeros((len(points), 3, 3, 3, 6, 4))
+    for place in np.ndindex(3, 3, 3):
+        point = points + place - np.ones(3, int)
+        brick = pools.brick_at(point >> 1, level + 1)
+        octant = (point & 1) @ np.array([1, 2, 4])
+        found = brick != ABSENT
+        around[found, *place] = finer[brick[found] - first, octant[found]]
+    wanted = filtered(around)
+    assert len(wanted) > 50
+    assert wanted[..., 3].max() > 0.5
+    got = jumbled.sided[bricks, octants]
+    np.testing.assert_allclose(got, wanted, rtol=1.5 / 1024, atol=5e-5)
