@@ -93,13 +93,15 @@ class GlbWriter:
             entry["scale"] = [scale] * 3
         return self.add("nodes", entry)
 
-    def bytes(self, extensions: Sequence[str]) -> bytes:
+    def bytes(
+        self, extensions: Sequence[str], name: str = "atrium", maker: str = "tools/make_atrium.py"
+    ) -> bytes:
         """The whole file: one scene of all nodes."""
         document = {
-            "asset": {"version": "2.0", "generator": "elemental tools/make_atrium.py"},
+            "asset": {"version": "2.0", "generator": f"elemental {maker}"},
             "extensionsUsed": list(extensions),
             "scene": 0,
-            "scenes": [{"name": "atrium", "nodes": list(range(len(self.json["nodes"])))}],
+            "scenes": [{"name": name, "nodes": list(range(len(self.json["nodes"])))}],
             **self.json,
             "buffers": [{"byteLength": len(self.binary)}],
         }

@@ -39,13 +39,18 @@ def sky_radiance() -> F64:
 
 
 def sky_hdr() -> bytes:
-    """The sky as a Radiance RGBE picture, flat scanlines (Ward, "Real Pixels")."""
-    radiance = sky_radiance()
+    """The sky as a Radiance RGBE picture."""
+    return rgbe(sky_radiance())
+
+
+def rgbe(radiance: F64) -> bytes:
+    """Radiance (H, W, 3) as a Radiance RGBE picture, flat scanlines (Ward, "Real Pixels")."""
+    height, width = radiance.shape[:2]
     largest = radiance.max(axis=-1)
     mantissa, exponent = np.frexp(largest)
     scale = np.where(largest > 1e-32, mantissa * 256.0 / np.maximum(largest, 1e-32), 0.0)
-    pixels = np.empty((HEIGHT, WIDTH, 4), dtype=np.uint8)
+    pixels = np.empty((height, width, 4), dtype=np.uint8)
     pixels[..., :3] = (radiance * scale[..., None]).astype(np.uint8)
     pixels[..., 3] = np.where(largest > 1e-32, exponent + 128, 0)
-    header = f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {HEIGHT} +X {WIDTH}\n"
+    header = f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n"
     return header.encode() + pixels.tobytes()

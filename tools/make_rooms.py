@@ -1,0 +1,30 @@
+"""Writes the rooms that accuracy is measured on, and their sky: `python tools/make_rooms.py`."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from rooms.plans import PLANS
+from rooms.sky import windows_hdr
+
+FOLDER = Path(__file__).resolve().parent.parent / "content" / "scenes" / "rooms"
+
+
+def files() -> dict[str, bytes]:
+    """File name -> content."""
+    made = {f"{name}.glb": plan().glb(name) for name, plan in PLANS.items()}
+    return {**made, "windows.hdr": windows_hdr()}
+
+
+def main() -> None:
+    """Write all of them and say how large they are."""
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else FOLDER
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, content in files().items():
+        (folder / name).write_bytes(content)
+        print(f"{folder / name}: {len(content)} bytes")
+
+
+if __name__ == "__main__":
+    main()
