@@ -139,10 +139,10 @@ _TABLE = (
         source="[Mittring12]",
     ),
     Setting(
-        # 9: the talk's. With area lights seen through cones of their own, 36 find 0 to 4 % more light
-        # for three times the cost (docs/gi.md).
+        # 9: the talk's. With area lights seen through cones of their own, 36 find 0 to 4 % more
+        # light for three times the cost (docs/gi.md).
         "gi.diffuse_cones", "choice", 9,
-        "cones over the sphere that gather diffuse light; more tell the places of small lights better",
+        "cones over the sphere that gather diffuse light; more cost more and err less",
         unit="cones", choices=(9, 36, 63), source="[Mittring12] [Segovia06]",
     ),
     Setting(
