@@ -51,9 +51,11 @@ def pixels(path: Path) -> NDArray[np.uint8]:
 
 
 def assert_alike(a: NDArray[np.int64], b: NDArray[np.int64]) -> None:
-    """Equal but for the rounding of depths and positions: 6/255 at most, 1 % of pixels over 2."""
+    """Equal but for the rounding of depths and positions: 1 % of pixels over 2/255, single ones, whose
+    cone just meets an edge or misses it, up to 16."""
     difference = np.abs(a - b).max(axis=2)
-    assert difference.max() <= 6
+    assert difference.max() <= 16
+    assert (difference > 6).mean() <= 0.002
     assert (difference > 2).mean() <= 0.01
 
 
