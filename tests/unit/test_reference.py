@@ -118,6 +118,31 @@ def test_an_emitter_shows_its_texture_upright(tmp_path: Path) -> None:
     assert image[:, 6:].max() == 0.0
 
 
+@pytest.mark.parametrize("textured", [False, True])
+def test_all_of_a_tiled_emitters_light_is_found(tmp_path: Path, textured: bool) -> None:
+    """A lamp over a square lights it alike, whatever its uv: even, or with a tiled pattern."""
+    pixels = np.full((8, 8, 4), 255, np.uint8)
+    pixels[:, ::2, :3] = 0
+    lamp = matte(0.0)
+    lamp.emissive = np.full(3, 6.0 if textured else 3.0, np.float32)
+    if textured:
+        lamp.emissive_texture = TextureSlot(0)
+    lit = scene(matte(0.8), texture=Texture("stripes", pixels, nearest=True))
+    lit.materials.append(lamp)
+    above = np.diag(np.array([-1.0, 1.0, -1.0, 1.0], np.float32))
+    above[2, 3] = 5.0
+    lit.instances.append(Instance("lamp", 1, above))
+
+    def seen(uv_scale: float, uv_offset: float) -> float:
+        panel = square()
+        panel.material = 1
+        panel.uv0 = panel.uv1 = (panel.uv0 * uv_scale + uv_offset).astype(np.float32)
+        lit.meshes = [square(), panel]
+        return float(path_trace(lit, FRONT, Job((8, 8), 256, 1), tmp_path).mean())
+
+    assert seen(4.0, -1.75) == pytest.approx(seen(1.0, 0.0), rel=0.04)
+
+
 @pytest.mark.parametrize(
     ("target", "column"), [((0, 0, -1), 2), ((1, 0, 0), 3), ((0, 0, 1), 0), ((-1, 0, 0), 1)]
 )

@@ -157,15 +157,15 @@ class MaterialConverter:
         normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
         return np.asarray(normal * 0.5 + 0.5, dtype=np.float32)
 
-    def radiance(self, m: Material) -> Entry:
-        """What an emissive or unlit material sends out, as an area light's radiance."""
+    def radiance(self, m: Material) -> tuple[FloatArray, TextureSlot | None]:
+        """What an emissive or unlit material sends out, (H, W, 3) nit, and how it is read."""
         if m.unlit:
             maps = self._maps(m, np.ones(4, np.float32))
-            return bitmap(maps.base.astype(np.float32), maps.slot, self._scene)
+            return maps.base.astype(np.float32), maps.slot
         glow = m.emissive[None, None].astype(np.float32)
         if m.emissive_texture is not None:
             glow = glow * srgb_to_linear(self._pixels(m.emissive_texture)[..., :3])
-        return bitmap(glow, m.emissive_texture, self._scene)
+        return glow, m.emissive_texture
 
 
 def _slots(m: Material) -> list[TextureSlot]:

@@ -12,7 +12,9 @@ import numpy as np
 from elemental.core.images import read_environment, write_exr
 from elemental.scene.model import FloatArray
 
-CODE = tuple(Path(__file__).with_name(f"{name}.py") for name in ("bsdf", "mitsuba_scene", "ply"))
+CODE = tuple(
+    Path(__file__).with_name(f"{name}.py") for name in ("bsdf", "emission", "mitsuba_scene", "ply")
+)
 """What converts the scene: an edit there makes every reference anew."""
 
 

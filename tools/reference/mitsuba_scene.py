@@ -22,7 +22,8 @@ import numpy as np
 from elemental.core import transforms
 from elemental.scene.model import Camera, FloatArray, Light, Scene
 from reference.bsdf import Entry, MaterialConverter
-from reference.ply import two_sheets, world_meshes, write_ply
+from reference.emission import emitting_parts
+from reference.ply import WorldMesh, two_sheets, world_meshes, write_ply
 
 MASK_SAMPLES = 16
 """Samples that look for a light source in a pixel."""
@@ -41,8 +42,7 @@ class Job:
 
 def path_trace(scene: Scene, camera: Camera, job: Job, folder: Path) -> FloatArray:
     """Linear radiance (H, W, 3) float32; meshes pass through PLY files in `folder`."""
-    surfaces = _surfaces(scene, folder)
-    area_lights = _emitting_surfaces(scene, surfaces)
+    surfaces, area_lights = _surfaces(scene, folder)
     sky = _environment(scene, job.sky_intensity)
     punctual = {f"light{k}": _punctual(light) for k, light in enumerate(scene.lights)}
     parts = [np.zeros((job.size[1], job.size[0], 3), np.float32)]
@@ -55,8 +55,8 @@ def path_trace(scene: Scene, camera: Camera, job: Job, folder: Path) -> FloatArr
 
 def emission_mask(scene: Scene, camera: Camera, job: Job, folder: Path) -> FloatArray:
     """Where the eye meets no emission and no sky: (H, W, 3) float32, 1 or 0."""
-    surfaces = _surfaces(scene, folder)
-    lights = {**_emitting_surfaces(scene, surfaces), "sky": {"type": "constant"}}
+    surfaces, area_lights = _surfaces(scene, folder)
+    lights = {**area_lights, "sky": {"type": "constant"}}
     quick = Job(job.size, MASK_SAMPLES, 0)
     image = _render({**surfaces, **lights}, camera, quick, max_depth=1)
     dark = image.max(axis=2, keepdims=True) == 0.0
@@ -99,39 +99,31 @@ def _sensor(camera: Camera, job: Job) -> Entry:
     }
 
 
-def _surfaces(scene: Scene, folder: Path) -> dict[str, Entry]:
-    """One shape for each material; two where both sides emit."""
+def _surfaces(scene: Scene, folder: Path) -> tuple[dict[str, Entry], dict[str, Entry]]:
+    """All shapes as they reflect, and those that emit as they do both, by the same names."""
     converter = MaterialConverter(scene)
     uv_sets = {k: converter.uv_set(m) for k, m in enumerate(scene.materials)}
     shapes: dict[str, Entry] = {}
+    emitting: dict[str, Entry] = {}
     for index, mesh in world_meshes(scene, uv_sets).items():
         material = scene.materials[index]
         color = mesh.colors.astype(np.float32).mean(axis=0) / np.float32(255.0)
         bsdf = converter.bsdf(material, color)
-        # mitsuba's area lights shine to the front: a back that shines too is a mesh of its own.
-        emits_twice = material.double_sided and (material.emits or material.unlit)
-        sheets = two_sheets(mesh) if emits_twice else (mesh,)
-        for name, sheet in zip(_sheet_names(index), sheets, strict=False):
+        parts: list[tuple[WorldMesh, Entry | None]] = [(mesh, None)]
+        if material.emits or material.unlit:
+            # mitsuba's area lights shine to the front: a back that shines too is a mesh of its own.
+            sheets = two_sheets(mesh) if material.double_sided else (mesh,)
+            glow = converter.radiance(material)
+            parts = [part for sheet in sheets for part in emitting_parts(scene, sheet, *glow)]
+        for number, (part, radiance) in enumerate(parts):
+            name = f"surface{index}_{number}"
             path = folder / f"{name}.ply"
-            write_ply(path, sheet)
+            write_ply(path, part)
             shapes[name] = {"type": "ply", "filename": str(path), "bsdf": bsdf}
-    return shapes
-
-
-def _sheet_names(material: int) -> tuple[str, str]:
-    return f"surface{material}", f"surface{material}_back"
-
-
-def _emitting_surfaces(scene: Scene, surfaces: dict[str, Entry]) -> dict[str, Entry]:
-    """The shapes that emit, with their area lights: they replace those of the same name."""
-    converter = MaterialConverter(scene)
-    found = {}
-    for index, material in enumerate(scene.materials):
-        for name in _sheet_names(index):
-            if name in surfaces and (material.emits or material.unlit):
-                light = {"type": "area", "radiance": converter.radiance(material)}
-                found[name] = {**surfaces[name], "emitter": light}
-    return found
+            if radiance is not None:
+                light = {"type": "area", "radiance": radiance}
+                emitting[name] = {**shapes[name], "emitter": light}
+    return shapes, emitting
 
 
 def _environment(scene: Scene, factor: float) -> dict[str, Entry]:
