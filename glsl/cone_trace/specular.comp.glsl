@@ -1,11 +1,9 @@
 // One cone a listed pixel along the mirrored eye vector, scattered into the picture.
 // [Mittring12 "Specular Sampling 1/2", "2/2"]
 
-#include "lib/dispatch.glsl"
 #include "lib/glossy.glsl"
+#include "lib/specular_append.glsl"
 #include "lib/specular_cone.glsl"
-#include "shared/specular_list.glsl"
-#include "shared/specular_state.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -14,8 +12,7 @@ layout(rgba16f) writeonly uniform image2D o_specular_gi;
 void main() {
     uint item = linear_thread_id();
     if (item >= specular.listed) return;
-    uint code = specular_pixels[item];
-    ivec2 pixel = ivec2(code & 0xffffu, code >> 16);
+    ivec2 pixel = pixel_of_code(specular_pixels[item]);
     GlossySurface s = glossy_surface(pixel);
     imageStore(o_specular_gi, pixel, specular_cone(s.p_ws, s.normal, s.half_angle));
 }

@@ -1,37 +1,17 @@
-// Which pixels the cones of the coarse grid serve, and which are traced on their own.
+// Interpolates the listed pixels between those that are traced already, where these agree; lists the
+// others to be traced.
 // [Mittring12 "Specular Sampling 1/2": adaptive by specular brightness, depth and normal difference]
-#ifndef ADAPTIVE
-#define ADAPTIVE 1
-#endif
-#ifndef SHOW_TRACED
-#define SHOW_TRACED 0
-#endif
 
-#include "lib/false_color.glsl"
 #include "lib/glossy.glsl"
+#include "lib/show_traced.glsl"
 #include "lib/specular_append.glsl"
 #include "lib/specular_grid.glsl"
+#include "shared/undecided_list.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 64) in;
 
-uniform sampler2D u_broad_gi;
 layout(rgba16f) uniform image2D u_specular_gi;  // holds the coarse grid's pixels already
-#if SHOW_TRACED
-layout(rgba8) writeonly uniform image2D o_traced;
-#endif
 
-// Shares of false_color for the view of what was traced.
-const float SHOW_INTERPOLATED = 0.2;
-const float SHOW_COARSE = 0.5;
-const float SHOW_LISTED = 0.9;
-
-void show(ivec2 pixel, float how) {
-#if SHOW_TRACED
-    imageStore(o_traced, pixel, vec4(false_color(how), 1.0));
-#endif
-}
-
-#if ADAPTIVE
 // What a coarse pixel's surface may differ by and still stand for another.
 const float PLANE_TOLERANCE = 0.01;   // distance from the other's plane, a share of that from the eye
 const float NORMAL_TOLERANCE = 0.02;  // radians between the normals,
@@ -78,35 +58,16 @@ bool interpolate(ivec2 pixel, GlossySurface s, out vec4 light) {
     return all(lessThanEqual(shown * (high - low), SPREAD_VISIBLE + SPREAD_SHARE * shown * light.rgb));
 }
 
-bool in_coarse_grid(ivec2 pixel) {
-    ivec2 size = ivec2(u_view.viewport_px.xy);
-    return pixel == coarse_pixel(min(pixel / COARSE_PIXELS, coarse_size(size) - 1), size);
-}
-#endif
-
 void main() {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(pixel, ivec2(u_view.viewport_px.xy)))) return;
-    GlossySurface s = glossy_surface(pixel);
-    if (s.kind != GLOSSY_CONE) {
-        bool broad = s.kind == GLOSSY_BROAD;
-        imageStore(u_specular_gi, pixel, broad ? texelFetch(u_broad_gi, pixel, 0) : vec4(0.0, 0.0, 0.0, 1.0));
-        show(pixel, 0.0);
-        return;
-    }
-    atomicAdd(specular.pixels, 1u);
-#if ADAPTIVE
-    if (in_coarse_grid(pixel)) {
-        show(pixel, SHOW_COARSE);
-        return;
-    }
+    uint item = linear_thread_id();
+    if (item >= undecided.listed) return;
+    ivec2 pixel = pixel_of_code(undecided_pixels[item]);
     vec4 light;
-    if (interpolate(pixel, s, light)) {
+    if (interpolate(pixel, glossy_surface(pixel), light)) {
         imageStore(u_specular_gi, pixel, light);
-        show(pixel, SHOW_INTERPOLATED);
+        show_traced(pixel, SHOW_INTERPOLATED);
         return;
     }
-#endif
     append_pixel(pixel);
-    show(pixel, SHOW_LISTED);
+    show_traced(pixel, SHOW_LISTED);
 }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -16,13 +17,16 @@ from elemental.passes.gbuffer import GBuffer
 from elemental.passes.sky import Sky
 from elemental.passes.voxel.octree import Octree
 
-COARSE = Compute("cone_trace/specular_coarse.comp.glsl")
-UPSAMPLE = {
+SELECT = {
     (adaptive, show): Compute(
-        "cone_trace/specular_upsample.comp.glsl",
+        "cone_trace/specular_select.comp.glsl",
         defines={"ADAPTIVE": int(adaptive), "SHOW_TRACED": int(show)},
     )
     for adaptive in (False, True)
+    for show in (False, True)
+}
+UPSAMPLE = {
+    show: Compute("cone_trace/specular_upsample.comp.glsl", defines={"SHOW_TRACED": int(show)})
     for show in (False, True)
 }
 TRACE = Compute("cone_trace/specular.comp.glsl")
@@ -42,35 +46,44 @@ class Specular:
 
 @dataclass
 class SpecularCounters:
-    """What the GPU counted, frames later: pixels with glossy light, and cones traced for them."""
+    """What the GPU counted, frames later: cones of the pixels traced first, pixels between them,
+    and cones of those of them that interpolation would not do for."""
 
-    pixels: int = 0
-    coarse: int = 0
-    listed: int = 0
+    first: int = 0
+    undecided: int = 0
+    rest: int = 0
 
-    def receive_coarse(self, raw: bytes) -> None:
-        """Take the SpecularCounts of the coarse grid."""
-        self.coarse = int(_counts(raw)["listed"])
-
-    def receive(self, raw: bytes) -> None:
-        """Take the SpecularCounts of the up-sampling."""
-        self.pixels, self.listed = (int(_counts(raw)[name]) for name in ("pixels", "listed"))
+    def receive(self, name: str, raw: bytes) -> None:
+        """Take the SpecularCounts of one of the lists above."""
+        counts = np.frombuffer(raw, layouts().struct("SpecularCounts"), count=1)[0]
+        setattr(self, name, int(counts["listed"]))
 
     def counters(self) -> dict[str, int]:
         """By the names of the report."""
-        return {"specular_pixels": self.pixels, "specular_traced": self.coarse + self.listed}
+        return {
+            "specular_pixels": self.first + self.undecided,
+            "specular_traced": self.first + self.rest,
+        }
 
 
-def _counts(raw: bytes) -> np.void:
-    counts: np.void = np.frombuffer(raw, layouts().struct("SpecularCounts"), count=1)[0]
-    return counts
+@dataclass(frozen=True)
+class PixelList:
+    """A list of pixels that the GPU fills and dispatches over: see shared/specular_list.glsl."""
 
+    counts: BufferHandle
+    pixels: BufferHandle
 
-def coarse_size(size: tuple[int, ...]) -> tuple[int, int]:
-    """(width, height) of the coarse grid of a picture: as in lib/specular_grid.glsl."""
-    side = int(layouts().constant("COARSE_PIXELS"))
-    width, height = (max((length - side // 2 + side - 1) // side, 1) for length in size[:2])
-    return width, height
+    @classmethod
+    def empty(cls, g: Graph, name: str, capacity: int) -> PixelList:
+        """Nothing listed yet; the dispatch over it grows in x, then in y."""
+        counts = g.buffer(f"{name}.counts", int(layouts().struct("SpecularCounts").itemsize))
+        g.clear_buffer(counts, 0)
+        g.clear_buffer(counts, 1, offset=4, size=8)
+        return cls(counts, g.buffer(f"{name}.pixels", 4 * capacity))
+
+    def refs(self, block: str = "Specular") -> dict[str, Ref]:
+        """The list by its GLSL names: SpecularState, SpecularPixels."""
+        return {f"{block}State": self.counts, f"{block}Pixels": self.pixels}
 
 
 def trace_specular(
@@ -92,8 +105,10 @@ def trace_specular(
     grid are traced first and the others interpolated where these agree. What is to be traced is
     listed and dispatched indirectly, so that every thread has a cone. ``show`` asks for `traced`.
     """
+    size = gb.depth.size[:2]
     specular = g.texture("specular_gi", like=gb.depth, format=RGBA16F)
-    pixels = g.buffer("specular.pixels", 4 * math.prod(gb.depth.size[:2]))
+    traced = g.texture("specular.traced", like=gb.depth, format=RGBA8) if show else None
+    shown: dict[str, Ref] = {} if traced is None else {"o_traced": traced}
     surface: dict[str, Ref] = {
         "u_depth": gb.depth,
         "u_gbuffer_a": gb.a,
@@ -101,54 +116,45 @@ def trace_specular(
         "u_gbuffer_d": gb.d,
     }
 
-    def trace(name: str, counts: BufferHandle) -> None:
-        lists: dict[str, Ref] = {"SpecularState": counts, "SpecularPixels": pixels}
+    def trace(pixels: PixelList, name: str) -> None:
         g.compute(
             TRACE,
-            name,
-            reads={**surface, **lists, **octree.tracing_reads(), **sky.reads()},
+            f"cones.specular_{name}",
+            reads={**surface, **pixels.refs(), **octree.tracing_reads(), **sky.reads()},
             writes={"o_specular_gi": specular},
             params={"View": view, "AreaLights": area_lights, **octree.params, **sky.params()},
-            indirect=(counts, 0),
+            indirect=(pixels.counts, 0),
         )
 
-    if adaptive:
-        first = _no_pixels(g, "specular.coarse_counts")
-        g.compute(
-            COARSE,
-            "cones.specular_coarse",
-            reads=surface,
-            writes={"SpecularState": first, "SpecularPixels": pixels},
-            params={"View": view},
-            threads=coarse_size(gb.depth.size),
-        )
-        trace("cones.specular_first", first)
-        g.read_later(first, counters.receive_coarse)
-    rest = _no_pixels(g, "specular.counts")
-    writes: dict[str, Ref] = {
-        "u_specular_gi": specular,
-        "SpecularState": rest,
-        "SpecularPixels": pixels,
+    lists = {
+        name: PixelList.empty(g, f"specular.{name}", math.prod(size))
+        for name in ("first", "undecided", "rest")
     }
-    traced = None
-    if show:
-        writes["o_traced"] = traced = g.texture("specular.traced", like=gb.depth, format=RGBA8)
+    first, undecided, rest = lists.values()
     g.compute(
-        UPSAMPLE[adaptive, show],
-        "cones.specular_upsample",
+        SELECT[adaptive, show],
+        "cones.specular_select",
         reads={**surface, "u_broad_gi": broad_gi},
-        writes=writes,
+        writes={
+            "o_specular_gi": specular,
+            **first.refs(),
+            **(undecided.refs("Undecided") if adaptive else {}),
+            **shown,
+        },
         params={"View": view},
-        threads=gb.depth.size[:2],
+        threads=size,
     )
-    trace("cones.specular", rest)
-    g.read_later(rest, counters.receive)
+    trace(first, "first")
+    if adaptive:
+        g.compute(
+            UPSAMPLE[show],
+            "cones.specular_upsample",
+            reads={**surface, **undecided.refs("Undecided")},
+            writes={"u_specular_gi": specular, **rest.refs(), **shown},
+            params={"View": view},
+            indirect=(undecided.counts, 0),
+        )
+        trace(rest, "rest")
+    for name, pixels in lists.items():
+        g.read_later(pixels.counts, partial(counters.receive, name))
     return Specular(specular, traced)
-
-
-def _no_pixels(g: Graph, name: str) -> BufferHandle:
-    """A SpecularCounts of an empty list; its dispatch grows in x alone."""
-    counts = g.buffer(name, int(layouts().struct("SpecularCounts").itemsize))
-    g.clear_buffer(counts, 0)
-    g.clear_buffer(counts, 1, offset=4, size=8)
-    return counts
