@@ -187,7 +187,7 @@ class Renderer:
         )
         octree: Octree | None = None
         if voxels is not None:
-            light_key = (shadows.light_key, sky.key)
+            light_key = (shadows.lamp_key, sky.key)
             octree = voxels.update(g, shadows, sky, self._area_block, light_key, s["gi.bounces"])
         if view_name in VOXEL_VIEWS and octree is not None:
             level, side = s["voxels.level"], s["voxels.side"]

@@ -5,6 +5,7 @@
 
 // Four words a block: bits, bricks before, tiles before; these count from the start of a group of
 // SCAN_BLOCKS. After the blocks four words a group: two unused, bricks and tiles before the group.
+// After these, where slots outlive a build, the slot of each brick, then of each tile, by rank.
 // NODE_BLOCKS_ACCESS: coherent for who writes them.
 #ifndef NODE_BLOCKS_ACCESS
 #define NODE_BLOCKS_ACCESS readonly
@@ -34,6 +35,21 @@ uint node_word(int level, uint code) {
 
 const uint NO_BRICK = 0xffffffffu;
 
+// Words of the slots of the brick and of the tile with a rank.
+uint brick_slot_word(uint rank) {
+    uint groups = (u_octree.block_count + SCAN_BLOCKS - 1u) / SCAN_BLOCKS;
+    return group_block(groups) * BLOCK_WORDS + rank;
+}
+uint tile_slot_word(uint rank) { return brick_slot_word(u_octree.brick_capacity) + rank; }
+
+// The brick and the tile with a rank; both were kept.
+uint brick_of_rank(uint rank) {
+    return u_octree.keeps_slots == 0u ? rank : node_blocks[brick_slot_word(rank)];
+}
+uint tile_of_rank(uint rank) {
+    return u_octree.keeps_slots == 0u ? rank : node_blocks[tile_slot_word(rank)];
+}
+
 // The brick of a cell's node, or NO_BRICK; `brick_count` were kept.
 uint brick_of_node(ivec3 cell, int level, uint brick_count) {
     if (!in_grid(level, cell)) return NO_BRICK;
@@ -42,6 +58,6 @@ uint brick_of_node(ivec3 cell, int level, uint brick_count) {
     uvec2 bits = block_bits(block);
     uint word = (code & 32u) == 0u ? bits.x : bits.y;
     if ((word & cell_bit(code)) == 0u) return NO_BRICK;
-    uint brick = block_rank(block).x + bit_count64(bits & bits_below(code & 63u));
-    return brick < brick_count ? brick : NO_BRICK;
+    uint rank = block_rank(block).x + bit_count64(bits & bits_below(code & 63u));
+    return rank < brick_count ? brick_of_rank(rank) : NO_BRICK;
 }

@@ -32,7 +32,7 @@ Sides leaf_sides(uint voxel) {
     return s;
 }
 
-uint leaf_slot(uint brick) { return brick - octree_state.level_first[u_octree.coarsest_leaf]; }
+uint leaf_slot(uint brick) { return brick - octree_state.first_leaf_brick; }
 
 uint voxel_of_point(uvec3 point) {
     uvec3 odd = point & 1u;

@@ -60,6 +60,21 @@ struct Brick {
 const uint BRICK_NODE_MASK = 0x00ffffffu;
 const uint BRICK_POINTS_SHIFT = 24u;
 
+// Where bricks and tiles keep their slots from one build to the next, each kind has slots of its own:
+// bricks above the leaves, others above the finest level, the finest bricks, tiles.
+const int SLOT_POOLS = 4;
+const int TILE_POOL = 3;
+struct SlotPool {
+    uint first_slot;
+    uint first_rank;   // the pool's share of all ranks, of the last build's, and of those kept
+    uint first_old;
+    uint first_kept;
+    uint used;
+    uint free_count;   // slots in the list of free ones,
+    uint give_from;    // where vanished ones are added to it,
+    uint take_from;    // and from where down new ones take theirs
+};
+
 struct DispatchArgs {
     uint x;
     uint y;
@@ -79,12 +94,21 @@ struct OctreeState {
     uint interior_count;               // bricks above the finest level
     uint leaf_asked;                   // what leaf_count and interior_count would be in larger pools
     uint interior_asked;
+    uint first_leaf_brick;             // the brick that leaf attributes begin with
+    uint first_finest_brick;           // the first of the finest level
+    uint still_count;                  // fragments of what never moves: the queue begins with them
+    uint fresh;                        // whether all slots were given out anew, by rank
+    uint stale;                        // whether they have to be next time: something was dropped
+    SlotPool slot_pools[4];            // see SLOT_POOLS
+    DispatchArgs moving_fragments;     // a thread a fragment behind the still ones
+    DispatchArgs relinked_fragments;   // a thread a still fragment, none unless `fresh`
+    DispatchArgs relinked_voxels;      // a thread a voxel of the leaves' pool, none unless `fresh`
     DispatchArgs fragments;
     DispatchArgs interior_bricks;      // a thread a brick above the finest level
     DispatchArgs leaf_bricks;          // a thread a brick of the finest level
     DispatchArgs leaf_voxels;          // a thread an occupied voxel of a leaf
     DispatchArgs level_voxels[10];     // a thread an occupied voxel of this level, above the finest
-    uint level_first[12];              // first brick of each level; [levels] = brick_count
+    uint level_first[12];              // first brick of each level, by rank; [levels] = brick_count
 };
 
 layout(std140) uniform Octree {
@@ -103,6 +127,9 @@ layout(std140) uniform Octree {
     uint brick_capacity;
     uint leaf_capacity;      // bricks that can hold leaf attributes
     uint interior_capacity;  // bricks that can hold filtered HDR values
+    uint keeps_slots;        // 1: bricks and tiles outlive a build in their slots; 0: a slot is a rank
+    uint brick_list;         // word of VoxelList from which bricks are listed
+    uvec4 slot_capacity;     // of each slot pool
     vec3 atlas_texel;      // 1 / size in texels
     vec3 leaf_atlas_texel;
 } u_octree;

@@ -19,3 +19,9 @@ struct DrawCommand {
     uint base_vertex;
     uint base_instance;
 };
+
+// Which chunks a pass lists: all, or those of what moves or of what does not.
+layout(std140) uniform TriangleSelection {
+    uint first_chunk;
+    uint chunk_count;
+} u_selection;

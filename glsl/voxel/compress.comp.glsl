@@ -4,11 +4,19 @@
 // Border and neighbour encode the same HDR value. A power of two keeps them equal to the bit where
 // both bricks have the same multiplier, and rounding to nearest keeps the error of a voxel at or
 // below 1/255 of its brick's largest value: half a step of at most twice that value.
+//
+// LISTED=1: only the listed bricks, whose other texels may hold what was there before.
 
 #include "lib/dispatch.glsl"
 #include "lib/surroundings.glsl"
 #include "lib/brick_multiplier.glsl"
 #include "lib/brick_atlas.glsl"
+#ifndef LISTED
+#define LISTED 0
+#endif
+#if LISTED
+#include "lib/voxel_list.glsl"
+#endif
 
 layout(local_size_x = 64) in;
 
@@ -16,7 +24,10 @@ layout(rgba8) writeonly uniform image3D u_atlas;
 
 void main() {
     uint brick = linear_thread_id();
-    if (brick >= octree_state.interior_count) return;
+    if (brick >= octree_state.interior_bricks.threads) return;
+#if LISTED
+    brick = interior_brick_of_item(brick);
+#endif
     uint cell = bricks[brick].cell;
     Surroundings points = surroundings(ivec3(unpack_cell(cell)), unpack_cell_level(cell), 0u);
     vec3 maximum = vec3(0.0);
@@ -30,8 +41,16 @@ void main() {
     }
     float inverse_scale = store_multiplier(brick, largest(maximum));
 
-    // The atlas was cleared: points without anything stay as they are.
     ivec3 base = brick_texel(brick);
+#if LISTED
+    for (uint left = ~points.occupied & 0x7ffffffu; left != 0u; left &= left - 1u) {
+        ivec3 at = base + ivec3(place_of_point(uint(findLSB(left))));
+        for (uint side = 0u; side < BRICK_DIRECTIONS; ++side) {
+            imageStore(u_atlas, at + ivec3(0, 0, side * BRICK_SIDE), vec4(0.0));
+        }
+    }
+#endif
+    // Otherwise the atlas was cleared: points without anything stay as they are.
     for (uint left = points.occupied; left != 0u; left &= left - 1u) {
         uvec3 place = place_of_point(uint(findLSB(left)));
         uint voxel;

@@ -4,6 +4,12 @@
 #include "lib/surroundings.glsl"
 #include "lib/brick_multiplier.glsl"
 #include "lib/brick_atlas.glsl"
+#ifndef LISTED
+#define LISTED 0
+#endif
+#if LISTED
+#include "lib/voxel_list.glsl"
+#endif
 
 layout(local_size_x = 64) in;
 
@@ -13,9 +19,13 @@ layout(rgba8_snorm) writeonly uniform image3D u_normals;
 uint voxel_at[27];  // of the occupied points
 
 void main() {
-    uint slot = linear_thread_id();
-    uint brick = octree_state.interior_count + slot;
-    if (brick >= octree_state.brick_count) return;
+    uint item = linear_thread_id();
+    if (item >= octree_state.leaf_bricks.threads) return;
+#if LISTED
+    uint brick = finest_brick_of_item(item);
+#else
+    uint brick = octree_state.first_finest_brick + item;
+#endif
     uint cell = bricks[brick].cell;
     Surroundings points = surroundings(ivec3(unpack_cell(cell)), unpack_cell_level(cell), 0u);
     vec3 maximum = vec3(0.0);
@@ -29,8 +39,15 @@ void main() {
     }
     float inverse_scale = store_multiplier(brick, largest(maximum));
 
-    // The atlases were cleared: points without anything stay as they are.
-    ivec3 base = leaf_texel(slot);
+    ivec3 base = leaf_texel(brick - octree_state.first_finest_brick);
+#if LISTED
+    for (uint left = ~points.occupied & 0x7ffffffu; left != 0u; left &= left - 1u) {
+        ivec3 at = base + ivec3(place_of_point(uint(findLSB(left))));
+        imageStore(u_colors, at, vec4(0.0));
+        imageStore(u_normals, at, vec4(0.0));
+    }
+#endif
+    // Otherwise the atlases were cleared: points without anything stay as they are.
     for (uint left = points.occupied; left != 0u; left &= left - 1u) {
         uint i = uint(findLSB(left));
         uvec3 place = place_of_point(i);

@@ -46,7 +46,7 @@ void main() {
     if (item >= octree_state.leaf_voxels.threads) return;
     uint index = leaf_voxel_of_item(item);
     VoxelAttributes voxel = attributes[index];
-    uint brick = index / BRICK_VOXELS + octree_state.level_first[u_octree.coarsest_leaf];
+    uint brick = index / BRICK_VOXELS + octree_state.first_leaf_brick;
     uint octant = index % BRICK_VOXELS;
     uint cell = bricks[brick].cell;
     int level = unpack_cell_level(cell);

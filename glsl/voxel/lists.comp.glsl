@@ -1,6 +1,11 @@
-// The dispatches over the lists of voxels, once their lengths are known. A thread a list.
+// The dispatches over the lists of voxels, and with LISTS_DIRTY of bricks, once their lengths are known.
+// A thread a list.
 
 #include "lib/dispatch_args.glsl"
+
+#ifndef LISTS_DIRTY
+#define LISTS_DIRTY 0
+#endif
 
 layout(local_size_x = 16) in;
 
@@ -14,4 +19,11 @@ void main() {
     } else if (level == u_octree.leaf_level) {
         octree_state.leaf_voxels = dispatch_args(octree_state.leaf_voxels.threads, BRICK_GROUP);
     }
+#if LISTS_DIRTY
+    if (level == u_octree.leaf_level + 1) {
+        octree_state.interior_bricks = dispatch_args(octree_state.interior_bricks.threads, BRICK_GROUP);
+    } else if (level == u_octree.leaf_level + 2) {
+        octree_state.leaf_bricks = dispatch_args(octree_state.leaf_bricks.threads, BRICK_GROUP);
+    }
+#endif
 }

@@ -1,12 +1,23 @@
 // From the occupied lattice points of a level: the nodes of that level that touch one, and the
 // occupied points of the next coarser lattice. A node exists exactly where a lookup in it, border
 // included, can differ from empty, so empty nodes can be skipped without a jump.
+//
+// DIRTY=1 starts from the dirty points alone: those of them that are occupied do as above, where the
+// others have been done before; and all of them make the nodes dirty that touch one, and the coarser
+// points.
 
 #include "lib/dispatch.glsl"
 #define NODE_BLOCKS_ACCESS coherent
 #include "lib/node_blocks.glsl"
 #include "lib/regions.glsl"
 #include "shared/octree_level.glsl"
+#ifndef DIRTY
+#define DIRTY 0
+#endif
+#if DIRTY
+#define DIRTY_ACCESS coherent
+#include "lib/dirty.glsl"
+#endif
 
 layout(local_size_x = 64) in;
 
@@ -47,29 +58,62 @@ void set_coarser_point(ivec3 point, int level) {
     if ((point_words[word] & bit) == 0u) atomicOr(point_words[word], bit);
 }
 
+#if DIRTY
+void set_dirty_node(ivec3 cell, int level) {
+    uint code = grid_code(level, uvec3(cell));
+    uint word = dirty_node_word(level, code);
+    uint bit = cell_bit(code);
+    if ((dirty_words[word] & bit) == 0u) atomicOr(dirty_words[word], bit);
+}
+
+void set_coarser_dirty(ivec3 point, int level) {
+    uint code = grid_code(level, uvec3(point));
+    uint word = cell_word(level, code);
+    uint bit = cell_bit(code);
+    if ((dirty_words[word] & bit) == 0u) atomicOr(dirty_words[word], bit);
+}
+#endif
+
 void main() {
     int level = u_level.level;
     uint block = linear_thread_id();
     if (block >= grid_block_count(level + 1)) return;
     uint first_word = (grid_first_block(level + 1) + block) * 2u;
     uvec2 bits = uvec2(point_words[first_word], point_words[first_word + 1u]);
+#if DIRTY
+    uvec2 dirty = uvec2(dirty_words[first_word], dirty_words[first_word + 1u]);
+    bits &= dirty;
+    if (dirty == uvec2(0u)) return;
+#else
     if (bits == uvec2(0u)) return;
+#endif
 
     ivec3 base = ivec3(grid_cell(level + 1, block * 64u)) / 2;
     for (int i = 0; i < 27; ++i) {
         ivec3 offset = ivec3(i % 3, (i / 3) % 3, i / 9);
         ivec3 cell = base + offset - 1;
-        uvec2 touched = points_of_node(0u, offset.x - 1) & points_of_node(1u, offset.y - 1)
-                        & points_of_node(2u, offset.z - 1) & bits;
-        if (touched != uvec2(0u) && in_grid(level, cell) && leaf_level_of_cell(cell, level) >= level) {
-            set_node(cell, level);
-        }
         ivec3 coarser = base + offset;
+        uvec2 touched = points_of_node(0u, offset.x - 1) & points_of_node(1u, offset.y - 1)
+                        & points_of_node(2u, offset.z - 1);
         uvec2 reached = points_of_coarser(0u, offset.x) & points_of_coarser(1u, offset.y)
-                        & points_of_coarser(2u, offset.z) & bits;
+                        & points_of_coarser(2u, offset.z);
+#if DIRTY
+        uvec2 asked = dirty;
+#else
+        uvec2 asked = bits;
+#endif
+        if ((touched & asked) != uvec2(0u) && in_grid(level, cell) && leaf_level_of_cell(cell, level) >= level) {
+            if ((touched & bits) != uvec2(0u)) set_node(cell, level);
+#if DIRTY
+            set_dirty_node(cell, level);
+#endif
+        }
         // The lattice of level - 1 has as many points as this level has nodes.
-        if (level > 0 && reached != uvec2(0u) && in_grid(level, coarser)) {
-            set_coarser_point(coarser, level);
+        if (level > 0 && (reached & asked) != uvec2(0u) && in_grid(level, coarser)) {
+            if ((reached & bits) != uvec2(0u)) set_coarser_point(coarser, level);
+#if DIRTY
+            set_coarser_dirty(coarser, level);
+#endif
         }
     }
 }

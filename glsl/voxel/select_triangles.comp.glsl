@@ -35,8 +35,8 @@ void list_triangle(uint command, uvec3 corners) {
 void main() {
     uint thread = linear_thread_id();
     uint number = thread / TRIANGLE_GROUP;
-    if (number >= uint(chunks.length())) return;
-    TriangleChunk chunk = chunks[number];
+    if (number >= u_selection.chunk_count) return;
+    TriangleChunk chunk = chunks[u_selection.first_chunk + number];
     uint triangle = thread % TRIANGLE_GROUP;
     if (triangle >= chunk.triangles) return;
 

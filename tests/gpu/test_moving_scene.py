@@ -182,7 +182,14 @@ def pose_of(**fields: Any) -> Pose:
 
 
 def test_a_moving_scene_looks_like_a_still_one_posed_alike(renderers: Any) -> None:
-    """The same bytes with lights, shadows, area lights and voxels, whatever came before."""
+    """With lights, shadows, area lights and voxels, whatever came before. Bricks may stand
+    elsewhere in the atlases, where coordinates round otherwise: few half floats differ by a step.
+    """
+
+    def assert_alike(one: Array, other: Array, note: str) -> None:
+        np.testing.assert_allclose(one, other, rtol=2.0**-9, atol=2.0**-14, err_msg=note)
+        assert (one != other).any(axis=2).mean() < 0.01, note
+
     world = stage()
     moving = renderers(world)
     pictures = []
@@ -190,10 +197,10 @@ def test_a_moving_scene_looks_like_a_still_one_posed_alike(renderers: Any) -> No
         shown = picture(moving, t)
         still = posed(world, t)
         assert len(still.instances) == (4 if 1.0 <= t < 2.0 else 5)
-        np.testing.assert_array_equal(shown, picture(renderers(still), 0.0), str(t))
+        assert_alike(shown, picture(renderers(still), 0.0), str(t))
         pictures.append(shown)
     assert np.abs(pictures[1] - pictures[2])[..., :3].max() > 0.1
-    np.testing.assert_array_equal(pictures[1], pictures[4])
+    assert_alike(pictures[1], pictures[4], "again")
 
 
 def test_bent_meshes_are_numpy_s_to_rounding(device: Device, on_device: Any) -> None:

@@ -89,7 +89,7 @@ class GpuScene:
         self._commands, self._order = commands, numbers
         self._everything = self._place("everything")
         self._seen_by: dict[str, Placed] = {}
-        self.lists = TriangleLists(self._device, commands, numbers, self.indices)
+        self.lists = TriangleLists(self._device, commands, numbers, self.indices, self.dynamic)
         placement = (self.instances, INSTANCE_FORMAT, INSTANCE_NAMES)
         attributes = [*self._attributes(), placement]
         self._listed = self._device.vertex_input(attributes, self.lists.indices)

@@ -37,13 +37,14 @@ class ShadowMaps:
     """The maps on the device, with the buffers Lights and ShadowViews that go with them.
 
     `light_key` differs when anything differs that the light on a voxel depends on: a light or the
-    geometry, not the camera.
+    geometry, not the camera. `lamp_key` differs when a light does.
     """
 
     def __init__(self, device: Device, settings: ShadowSettings) -> None:
         self._device = device
         self.settings = settings
         self.light_key: Hashable = None
+        self.lamp_key: Hashable = None
         self._maps: Texture | None = None
         self._buffers: dict[str, Buffer] = {}
         self._uploaded: dict[str, bytes] = {}
@@ -76,7 +77,8 @@ class ShadowMaps:
         self._upload("ShadowViews", plan.views)
         light_fields = [name for name in plan.lights.dtype.names or () if "cascade" not in name]
         fixed = plan.views[: plan.fixed]
-        self.light_key = (scene.version, plan.lights[light_fields].tobytes(), fixed.tobytes())
+        self.lamp_key = (plan.lights[light_fields].tobytes(), fixed.tobytes())
+        self.light_key = (scene.version, self.lamp_key)
         self._forget_changed(plan, scene)
         stale = []
         for number, view in enumerate(plan.views):

@@ -22,10 +22,13 @@ class TriangleLists:
     indices that the commands draw. Here each instance, in draw order, has a command of its own,
     whose base instance is the instance's number.
 
-    ``selects``: whether there are lists at all; without, `commands` draw every triangle.
+    ``dynamic`` (N,) bool by instance number: their chunks stand last, so that they can be listed
+    alone. ``selects``: whether there are lists at all; without, `commands` draw every triangle.
     """
 
-    def __init__(self, device: Device, commands: Array, order: Array, indices: Buffer) -> None:
+    def __init__(
+        self, device: Device, commands: Array, order: Array, indices: Buffer, dynamic: Array
+    ) -> None:
         self.instances = len(order)
         whole = np.repeat(commands, commands["instance_count"])
         whole["instance_count"] = 1
@@ -49,8 +52,17 @@ class TriangleLists:
         self.commands = upload("commands", empty.nbytes)
         self.indices = upload("indices", int(VIEWS * ends[-1]) * 4)
         chunks = _chunks(whole)
-        self.chunk_count = len(chunks)
-        self.chunks = upload("chunks", chunks)
+        moves = dynamic[chunks["instance"]]
+        self._still_chunks, self._chunks = int((~moves).sum()), len(chunks)
+        self.chunks = upload("chunks", chunks[np.argsort(moves, kind="stable")])
+
+    def selection(self, dynamic: bool | None) -> tuple[int, int]:
+        """(first, count) of the chunks of what can, or can't, move; None: of all."""
+        if dynamic is None:
+            return 0, self._chunks
+        if dynamic:
+            return self._still_chunks, self._chunks - self._still_chunks
+        return 0, self._still_chunks
 
     def first_command(self, view: int) -> int:
         """Of a view's commands, one an instance."""

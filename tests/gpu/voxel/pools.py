@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from elemental.core.layout import layouts
 from elemental.passes.voxel.grid import octal_sum
+from elemental.passes.voxel.octree import Octree
 from glsl.harness import run_glsl
 from gpu.voxel.stage import Stage
 
@@ -58,9 +59,13 @@ class Pools:
 
     @classmethod
     def read(cls, stage: Stage) -> Pools:
-        grid, counts = stage.own_grid, stage.counts
-        used = grid.dense_nodes + 8 * counts.tiles
-        nodes = stage.octree.nodes.read(layouts().struct("Node"), used)
+        return cls.of(stage.octree, stage.counts.tiles, stage.counts.bricks)
+
+    @classmethod
+    def of(cls, octree: Octree, tiles: int, bricks: int) -> Pools:
+        """The first so many tiles and bricks of an octree."""
+        grid = octree.grid
+        nodes = octree.nodes.read(layouts().struct("Node"), grid.dense_nodes + 8 * tiles)
         child = nodes["child"].astype(np.int64)
         brick_word = nodes["brick"].astype(np.int64)
         brick_of = (brick_word & constant("NODE_BRICK_MASK")) - 1
@@ -81,10 +86,10 @@ class Pools:
                 index = np.where(has_tile, grid.dense_nodes + 8 * tile + octant, ABSENT)
             node.append(index.reshape((side,) * 3))
             brick.append(np.where(index != ABSENT, brick_of[index], ABSENT).reshape((side,) * 3))
-        bricks = stage.octree.bricks.read(layouts().struct("Brick"), counts.bricks)
-        cell = bricks["cell"].astype(np.int64)
-        owner = bricks["node"].astype(np.int64) & constant("BRICK_NODE_MASK")
-        word = brick_word[owner]
+        placed = octree.bricks.read(layouts().struct("Brick"), bricks)
+        cell = placed["cell"].astype(np.int64)
+        owner = placed["node"].astype(np.int64) & constant("BRICK_NODE_MASK")
+        word = brick_word[np.minimum(owner, len(nodes) - 1)]
         exponent = (word >> constant("NODE_SCALE_SHIFT")) - constant("NODE_SCALE_BIAS")
         return cls(
             node=node,
@@ -94,7 +99,7 @@ class Pools:
             level=cell >> 27 & 15,
             is_leaf=(cell & constant("BRICK_LEAF")) != 0,
             node_of_brick=owner,
-            points=bricks["node"].astype(np.int64) >> constant("BRICK_POINTS_SHIFT"),
+            points=placed["node"].astype(np.int64) >> constant("BRICK_POINTS_SHIFT"),
             scale=np.exp2(exponent.astype(np.float64)),
         )
 

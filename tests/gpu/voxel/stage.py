@@ -56,7 +56,7 @@ class Lit:
 
     @property
     def light_key(self) -> Hashable:
-        return self.shadows.light_key, self.sky.key
+        return self.shadows.lamp_key, self.sky.key
 
     def grid(self, resolution: int) -> Grid:
         return Grid.fit(self.gpu.bounds, resolution)

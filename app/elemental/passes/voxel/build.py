@@ -52,8 +52,18 @@ def find_nodes(g: Graph, octree: Survey, fragments: AnyBuffer) -> BufferHandle:
     grid = octree.grid
     blocks = {"NodeBlocks": octree.node_blocks}
     points = g.buffer("voxel.points", grid.point_block_count * BLOCK_BYTES)
+    mark(g, octree, fragments, points, octree.node_blocks)
+    g.compute(SCAN_BLOCKS, writes=blocks, params=octree.params, groups=grid.scan_groups)
+    g.compute(SCAN_GROUPS, writes={**blocks, "State": octree.state}, params=octree.params, groups=1)
+    return points
+
+
+def mark(
+    g: Graph, octree: Survey, fragments: AnyBuffer, points: AnyBuffer, node_blocks: AnyBuffer
+) -> None:
+    """The bits of the points that the queue's fragments occupy, and of the nodes that touch one."""
     g.clear_buffer(points)
-    g.clear_buffer(octree.node_blocks)
+    g.clear_buffer(node_blocks)
     g.compute(
         MARK,
         reads={"State": octree.state, "Fragments": fragments, "Regions": octree.regions},
@@ -61,18 +71,15 @@ def find_nodes(g: Graph, octree: Survey, fragments: AnyBuffer) -> BufferHandle:
         params=octree.params,
         indirect=(octree.state, state_offset("fragments")),
     )
-    for level in range(grid.leaf_level, -1, -1):
+    for level in range(octree.grid.leaf_level, -1, -1):
         g.compute(
             REDUCE,
             f"reduce.{level}",
             reads={"Regions": octree.regions},
-            writes={"Points": points, **blocks},
+            writes={"Points": points, "NodeBlocks": node_blocks},
             params={**octree.params, "OctreeLevel": level_params(level)},
-            threads=grid.grid_blocks(level + 1),
+            threads=octree.grid.grid_blocks(level + 1),
         )
-    g.compute(SCAN_BLOCKS, writes=blocks, params=octree.params, groups=grid.scan_groups)
-    g.compute(SCAN_GROUPS, writes={**blocks, "State": octree.state}, params=octree.params, groups=1)
-    return points
 
 
 def build(g: Graph, octree: Octree, fragments: AnyBuffer) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from elemental.core.layout import Block
 from elemental.gpu.graph import Graph
-from elemental.gpu.refs import BufferHandle
+from elemental.gpu.refs import AnyBuffer
 from elemental.gpu.shaders import Compute
 from elemental.passes.voxel.build import level_params, state_offset
 from elemental.passes.voxel.octree import Octree
@@ -22,10 +22,13 @@ SIDED_BYTES_A_BRICK = 8 * 6 * 8
 
 
 @cache
-def reader(path: str, kind: str, one_leaf_level: bool) -> Compute:
+def reader(path: str, kind: str, one_leaf_level: bool, listed: bool = False) -> Compute:
     """A shader that reads "leaf" or "filtered" voxels, or "either" (lib/sided_voxel.glsl)."""
     level = int(one_leaf_level)
-    return Compute(path, {"VOXEL_KIND": f"{kind.upper()}_VOXELS", "ONE_LEAF_LEVEL": level})
+    return Compute(
+        path,
+        {"VOXEL_KIND": f"{kind.upper()}_VOXELS", "ONE_LEAF_LEVEL": level, "LISTED": int(listed)},
+    )
 
 
 def light_voxels(
@@ -57,10 +60,15 @@ def light_voxels(
     )
 
 
-def filter_levels(g: Graph, octree: Octree) -> BufferHandle:
-    """Six-sided values of every level above the finest, from the finest up: 8 x 6 half4 a brick."""
-    sided = g.buffer("voxel.sided", max(octree.capacity.interior, 1) * SIDED_BYTES_A_BRICK)
-    g.clear_buffer(sided)
+def filter_levels(g: Graph, octree: Octree, kept: AnyBuffer | None = None) -> AnyBuffer:
+    """Six-sided values of the listed voxels above the finest level, from the finest up.
+
+    8 x 6 half4 a brick, in ``kept``, or in a buffer of this frame.
+    """
+    sided = kept
+    if sided is None:
+        sided = g.buffer("voxel.sided", max(octree.capacity.interior, 1) * SIDED_BYTES_A_BRICK)
+        g.clear_buffer(sided)
     grid = octree.grid
     for level in range(grid.leaf_level - 1, -1, -1):
         finer = level + 1
@@ -82,18 +90,24 @@ def filter_levels(g: Graph, octree: Octree) -> BufferHandle:
     return sided
 
 
-def compress(g: Graph, octree: Octree, sided: BufferHandle) -> None:
-    """Every brick's texels with the redundant border, and its HDR multiplier."""
-    atlases = (octree.atlas, octree.leaf_colors, octree.leaf_normals)
-    for atlas in atlases:
-        g.clear_texture(atlas)
+def compress(g: Graph, octree: Octree, sided: AnyBuffer) -> None:
+    """The bricks' texels with the redundant border, and their HDR multipliers.
+
+    Of every brick, or, where bricks keep their slots, of the listed ones.
+    """
     grid = octree.grid
     reads = {**octree.voxel_reads(), "NodeBlocks": octree.node_blocks, "Sided": sided}
+    if octree.keeps_slots:
+        reads["VoxelList"] = octree.voxel_list
+    else:
+        for atlas in (octree.atlas, octree.leaf_colors, octree.leaf_normals):
+            g.clear_texture(atlas)
     g.compute(
         reader(
             "voxel/compress.comp.glsl",
             "filtered" if grid.one_leaf_level else "either",
             grid.one_leaf_level,
+            octree.keeps_slots,
         ),
         reads=reads,
         writes={"ScaledNodes": octree.nodes, "u_atlas": octree.atlas},
@@ -101,7 +115,7 @@ def compress(g: Graph, octree: Octree, sided: BufferHandle) -> None:
         indirect=(octree.state, state_offset("interior_bricks")),
     )
     g.compute(
-        reader("voxel/compress_leaves.comp.glsl", "leaf", grid.one_leaf_level),
+        reader("voxel/compress_leaves.comp.glsl", "leaf", grid.one_leaf_level, octree.keeps_slots),
         reads=reads,
         writes={
             "ScaledNodes": octree.nodes,

@@ -14,6 +14,7 @@ from elemental.passes.voxel.build import build
 from elemental.passes.voxel.grid import Grid
 from elemental.passes.voxel.light import compress, filter_levels, light_voxels
 from elemental.passes.voxel.octree import Capacity, Counts, Octree
+from elemental.passes.voxel.steps import Kept, boxes_max, keep_still, list_everything, step
 from elemental.passes.voxel.voxelize import voxelize
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ class VoxelLighting:
     """The octree of a scene with what it was built from and lit by.
 
     ``area_m2``: `sizing.projected_area`; ``capacity``: None counts first and allocates to fit.
+    Where parts of the scene can move, the octree is built in steps (`steps`).
     """
 
     def __init__(
@@ -42,12 +44,17 @@ class VoxelLighting:
         self.device = device
         self.scene = scene
         self.budget_bytes = budget_bytes
+        self._moves = bool(scene.dynamic.any())
         if capacity is None:
             capacity = self._room_for(sizing.count(device, scene, grid, area_m2))
-        self.octree = Octree(device, grid, capacity, max_emission)
+        self._allocate(grid, capacity, max_emission)
         self.counts = NOTHING
         self._built_version: int | None = None
         self._lit_by: Hashable = None
+
+    def _allocate(self, grid: Grid, capacity: Capacity, max_emission: float) -> None:
+        self.octree = Octree(self.device, grid, capacity, max_emission, keeps_slots=self._moves)
+        self._kept = Kept(self.device, self.octree) if self._moves else None
 
     def invalidate(self, what: str) -> None:
         """Make the next update rebuild the "geometry", or only relight: "light"."""
@@ -66,22 +73,43 @@ class VoxelLighting:
     ) -> Octree:
         """Add the passes that this frame needs: none where nothing changed.
 
-        ``light_key`` is equal as long as lights and sky are; ``bounces`` counts gathers: voxel
-        radiance holds light gathered ``bounces - 1`` times.
+        ``light_key`` is equal as long as lights and sky are, whatever moves; ``bounces`` counts
+        gathers: voxel radiance holds light gathered ``bounces - 1`` times.
         """
-        if self._built_version != self.scene.version:
+        gathers = bounces > 1
+        # Area lights reach voxels by gathering alone.
+        key = (light_key, bounces, area_lights.tobytes() if gathers else b"")
+        lit_anew = key != self._lit_by
+        built = self._built_version != self.scene.version
+        if built:
             self._grow()
-            build(g, self.octree, voxelize(g, self.scene, self.octree))
+            if self._kept is None:
+                build(g, self.octree, voxelize(g, self.scene, self.octree))
+            else:
+                self._step(g, self._kept, shadows, everything=lit_anew or gathers)
             g.read_later(self.octree.state, self._counted)
             self._built_version = self.scene.version
-            self._lit_by = None
-        key = (light_key, area_lights.tobytes(), bounces)
-        if key != self._lit_by:
+        elif lit_anew and self._kept is not None:
+            list_everything(g, self.octree, self._kept)
+        if built or lit_anew:
+            sided = self._kept.sided if self._kept is not None else None
             for bounce in range(max(bounces, 1)):
                 light_voxels(g, self.octree, shadows, sky, area_lights, gather=bounce > 0)
-                compress(g, self.octree, filter_levels(g, self.octree))
+                compress(g, self.octree, filter_levels(g, self.octree, sided))
             self._lit_by = key
         return self.octree
+
+    def _step(self, g: Graph, kept: Kept, shadows: ShadowMaps, everything: bool) -> None:
+        """What moved since the last build; all of the scene where that is not known or more."""
+        changes = self.scene.changes
+        follows = self._built_version is not None and self.scene.version == self._built_version + 1
+        if not (follows and all(self.scene.dynamic[change.instance] for change in changes)):
+            keep_still(g, self.scene, self.octree, kept)
+            everything = True
+        boxes = [box for c in changes if c.casts for box in (c.before, c.after) if box]
+        # Beside regions of other levels voxels depend on more than their own surroundings.
+        everything |= not self.octree.grid.one_leaf_level or len(boxes) > boxes_max()
+        step(g, self.scene, self.octree, kept, shadows, boxes, everything)
 
     def _counted(self, raw: bytes) -> None:
         self.counts = Counts.from_state(raw)
@@ -92,8 +120,7 @@ class VoxelLighting:
         return self._room_for(self.counts)
 
     def _room_for(self, counts: Counts) -> Capacity:
-        moves = bool(self.scene.dynamic.any())
-        wanted = sizing.with_slack(counts) if moves else counts
+        wanted = sizing.with_slack(counts) if self._moves else counts
         return sizing.capacity_for(wanted, self.budget_bytes)
 
     def _grow(self) -> None:
@@ -101,8 +128,9 @@ class VoxelLighting:
         if not self.counts.overflowed or self._wanted() == self.octree.capacity:
             return
         octree = self.octree
-        self.octree = Octree(self.device, octree.grid, self._wanted(), octree.max_emission)
-        octree.release()
+        self.release()
+        self._allocate(octree.grid, self._wanted(), octree.max_emission)
+        self._built_version = self._lit_by = None
 
     def counters(self) -> dict[str, int]:
         """What the newest counted build holds and what it had to drop."""
@@ -121,3 +149,5 @@ class VoxelLighting:
     def release(self) -> None:
         """Free the octree."""
         self.octree.release()
+        if self._kept is not None:
+            self._kept.release()

@@ -39,6 +39,15 @@ class Capacity:
     leaves: int
     interior: int
 
+    def slots(self, one_leaf_level: bool) -> tuple[int, int, int, int]:
+        """How many slots there are for bricks above the leaves, other bricks above the finest
+        level, the finest bricks, and tiles (SlotPool)."""
+        coarse = self.bricks if one_leaf_level else self.bricks - self.leaves
+        coarse = min(self.interior, max(coarse, 0))
+        mixed = 0 if one_leaf_level else min(self.interior - coarse, self.leaves)
+        finest = max(min(self.bricks - coarse - mixed, self.leaves - mixed), 0)
+        return coarse, mixed, finest, self.tiles
+
     def nbytes(self) -> int:
         """Bytes at most of the pools that grow with it, without the transient fragment queue."""
         sided = self.interior * 4 * (math.prod(SIDED_TEXELS) + 8)
@@ -120,6 +129,7 @@ def _empty_state() -> np.ndarray[tuple[int, ...], np.dtype[np.void]]:
     """An OctreeState before the first fragment: its dispatch grows in x alone."""
     state = np.zeros((), layouts().struct("OctreeState"))
     state["fragments"]["y"] = state["fragments"]["z"] = 1
+    state["stale"] = 1
     return state
 
 
@@ -127,21 +137,32 @@ class Survey:
     """What counting needs of an octree, without its pools: grid, state, regions, uniform block.
 
     ``max_emission``: the largest radiance that any material emits, which scales the fixed-point
-    sums; 0 where nothing emits.
+    sums; 0 where nothing emits. ``keeps_slots``: bricks and tiles outlive a build in their slots.
     """
 
-    def __init__(self, device: Device, grid: Grid, capacity: Capacity, max_emission: float) -> None:
+    def __init__(
+        self,
+        device: Device,
+        grid: Grid,
+        capacity: Capacity,
+        max_emission: float,
+        keeps_slots: bool = False,
+    ) -> None:
         self.device = device
         self.grid = grid
         self.capacity = capacity
         self.max_emission = max_emission
+        self.keeps_slots = keeps_slots
         self.regions = device.buffer(
             "octree.regions", grid.region_levels.ravel(), category=CATEGORY
         )
         self.state = device.buffer("octree.state", _struct_bytes("OctreeState"), category=CATEGORY)
         self.empty_state = device.buffer("octree.empty_state", _empty_state(), category=CATEGORY)
+        slots = capacity.bricks + capacity.tiles if keeps_slots else 0
         self.node_blocks = device.buffer(
-            "octree.node_blocks", grid.node_block_count * NODE_BLOCK_BYTES, category=CATEGORY
+            "octree.node_blocks",
+            grid.node_block_count * NODE_BLOCK_BYTES + slots * 4,
+            category=CATEGORY,
         )
         none = Atlas.fit(1, LEAF_TEXELS)
         self.params: dict[str, Block] = {"Octree": self._pack(none, none)}
@@ -166,9 +187,18 @@ class Survey:
             brick_capacity=capacity.bricks,
             leaf_capacity=capacity.leaves,
             interior_capacity=capacity.interior,
+            keeps_slots=self.keeps_slots,
+            brick_list=self._listed_voxels() if self.keeps_slots else 0,
+            slot_capacity=capacity.slots(grid.one_leaf_level) if self.keeps_slots else (0,) * 4,
             atlas_texel=sided.texel,
             leaf_atlas_texel=leaf.texel,
         )
+
+    def _listed_voxels(self) -> int:
+        """How many voxels can be occupied: leaves of coarser regions by finer neighbours, too."""
+        leaves = self.capacity.leaves * 8
+        lit = min(leaves, self.capacity.fragments) if self.grid.one_leaf_level else leaves
+        return self.capacity.interior * 8 + lit
 
     def release(self) -> None:
         """Free what it holds on the device."""
@@ -179,15 +209,23 @@ class Survey:
 class Octree(Survey):
     """Nodes, bricks, attributes, radiance, filtered values and the atlas of one grid."""
 
-    def __init__(self, device: Device, grid: Grid, capacity: Capacity, max_emission: float) -> None:
-        super().__init__(device, grid, capacity, max_emission)
+    def __init__(
+        self,
+        device: Device,
+        grid: Grid,
+        capacity: Capacity,
+        max_emission: float,
+        keeps_slots: bool = False,
+    ) -> None:
+        super().__init__(device, grid, capacity, max_emission, keeps_slots)
 
         def pool(name: str, nbytes: int) -> Buffer:
             return device.buffer(f"octree.{name}", max(nbytes, 16), category=CATEGORY)
 
         self.nodes = pool("nodes", (grid.dense_nodes + capacity.tiles * 8) * _struct_bytes("Node"))
         self.bricks = pool("bricks", capacity.bricks * _struct_bytes("Brick"))
-        self.voxel_list = pool("voxel_list", (capacity.interior * 8 + self._lit_voxels()) * 4)
+        listed_bricks = max(capacity.bricks, capacity.interior) if keeps_slots else 0
+        self.voxel_list = pool("voxel_list", (self._listed_voxels() + listed_bricks) * 4)
         attribute_bytes = 8 * _struct_bytes("VoxelAttributes")
         self.attributes = pool("attributes", capacity.leaves * attribute_bytes)
         self.radiance = pool("radiance", capacity.leaves * 8 * 8)
@@ -201,11 +239,6 @@ class Octree(Survey):
         self.leaf_colors = atlas("leaf_colors", leaf, RGBA8)
         self.leaf_normals = atlas("leaf_normals", leaf, RGBA8_SNORM)
         self.params = {"Octree": self._pack(sided, leaf)}
-
-    def _lit_voxels(self) -> int:
-        """How many leaf voxels can be occupied. Coarser regions' are by finer neighbours, too."""
-        voxels = self.capacity.leaves * 8
-        return min(voxels, self.capacity.fragments) if self.grid.one_leaf_level else voxels
 
     def tracing_reads(self) -> dict[str, Ref]:
         """What lib/cone.glsl binds."""

@@ -6,7 +6,7 @@ from __future__ import annotations
 from elemental.core.layout import layouts, pack
 from elemental.gpu.encode import Encoder
 from elemental.gpu.graph import Graph
-from elemental.gpu.refs import BufferHandle
+from elemental.gpu.refs import AnyBuffer, BufferHandle
 from elemental.gpu.shaders import Compute, Raster
 from elemental.gpu.state import RasterState
 from elemental.passes.scene_gpu import GpuScene
@@ -27,12 +27,14 @@ BOTH_SIDES = RasterState(cull="none", depth_test="none", depth_write=False)
 ALPHA_MODES: tuple[AlphaMode, ...] = ("opaque", "mask", "blend")
 
 
-def select_triangles(g: Graph, scene: GpuScene, octree: Survey) -> None:
+def select_triangles(g: Graph, scene: GpuScene, octree: Survey, dynamic: bool | None) -> None:
     """Fill the scene's lists with the triangles that may cover a lattice line, for each axis."""
     lists = scene.lists
     if not lists.selects:
         return
+    first, count = lists.selection(dynamic)
     g.copy_buffer(lists.empty, lists.commands)
+    selection = pack(layouts().block("TriangleSelection"), first_chunk=first, chunk_count=count)
     g.compute(
         SELECT,
         "voxelize.select",
@@ -43,8 +45,8 @@ def select_triangles(g: Graph, scene: GpuScene, octree: Survey) -> None:
             "Instances": scene.instances,
         },
         writes={"Commands": lists.commands, "Lists": lists.indices},
-        params=octree.params,
-        threads=lists.chunk_count * int(layouts().constant("TRIANGLE_GROUP")),
+        params={**octree.params, "TriangleSelection": selection},
+        threads=count * int(layouts().constant("TRIANGLE_GROUP")),
     )
 
 
@@ -54,18 +56,38 @@ def variant_of(batch: Batch) -> int:
 
 
 def voxelize(g: Graph, scene: GpuScene, octree: Survey) -> BufferHandle:
-    """The fragment queue: VoxelFragment for each lattice line that crosses a triangle.
-
-    Seen along each of the three axes, so that the surface separates its sides: no path of
-    face-connected empty voxels crosses it. What the queue can't hold is counted, not written.
-    """
+    """The fragment queue of the whole scene, of this frame alone."""
     g.copy_buffer(octree.empty_state, octree.state)
-    select_triangles(g, scene, octree)
     nbytes = octree.capacity.fragments * layouts().struct("VoxelFragment").itemsize
     fragments = g.buffer("voxel.fragments", nbytes)
+    append_fragments(g, scene, octree, fragments)
+    g.compute(
+        QUEUE, "voxelize.queue", writes={"State": octree.state}, params=octree.params, groups=1
+    )
+    return fragments
+
+
+def append_fragments(
+    g: Graph,
+    scene: GpuScene,
+    octree: Survey,
+    fragments: AnyBuffer,
+    dynamic: bool | None = None,
+) -> None:
+    """Append a VoxelFragment for each lattice line that crosses a triangle.
+
+    Of what can, or can't, move; ``dynamic`` None: of all. Seen along each of the three axes, so
+    that the surface separates its sides: no path of face-connected empty voxels crosses it. What
+    the queue can't hold is counted, not written.
+    """
+    batches_of = {mask: _batches(scene, mask, dynamic) for mask in VARIANTS}
+    if not any(batches_of.values()):
+        return
+    select_triangles(g, scene, octree, dynamic)
     side = octree.grid.resolution
+    what = {None: "", True: "moving.", False: "still."}[dynamic]
     for mask, shader in VARIANTS.items():
-        batches = [b for b in scene.batches(ALPHA_MODES) if variant_of(b) == mask]
+        batches = batches_of[mask]
         if not batches:
             continue
         for axis, name in enumerate("xyz"):
@@ -77,7 +99,7 @@ def voxelize(g: Graph, scene: GpuScene, octree: Survey) -> BufferHandle:
 
             g.raster(
                 shader,
-                f"voxelize.{name}.textures{mask}",
+                f"voxelize.{what}{name}.textures{mask}",
                 size=(side, side),
                 state=BOTH_SIDES,
                 reads={"Instances": scene.instances, "Materials": scene.materials},
@@ -86,7 +108,7 @@ def voxelize(g: Graph, scene: GpuScene, octree: Survey) -> BufferHandle:
                 draw=draw,
                 uses=(scene.lists.commands, scene.lists.indices),
             )
-    g.compute(
-        QUEUE, "voxelize.queue", writes={"State": octree.state}, params=octree.params, groups=1
-    )
-    return fragments
+
+
+def _batches(scene: GpuScene, mask: int, dynamic: bool | None) -> list[Batch]:
+    return [b for b in scene.batches(ALPHA_MODES, dynamic) if variant_of(b) == mask]

@@ -1,0 +1,277 @@
+"""An octree that follows moving things: only what they touch is built anew. [Mittring12 "Voxel
+Lighting Pipeline": optimized for few dynamic objects, region keeps static voxel data separate]
+
+Static geometry is rasterized once and its fragments stay. A step rasterizes what can move, sets the
+bits of its points among the static ones, and gives out slots; bricks and tiles that were there keep
+theirs. What the moving points left or reached, and what their shadows did, is dirty.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from elemental.core.layout import Block, layouts, pack
+from elemental.gpu.device import Device
+from elemental.gpu.graph import Graph
+from elemental.gpu.refs import Ref
+from elemental.gpu.resources import Buffer
+from elemental.gpu.shaders import Compute
+from elemental.passes.instance_table import Box
+from elemental.passes.scene_gpu import GpuScene
+from elemental.passes.shadow import ShadowMaps
+from elemental.passes.voxel.build import BLOCK_BYTES, level_params, mark, state_offset
+from elemental.passes.voxel.light import SIDED_BYTES_A_BRICK
+from elemental.passes.voxel.octree import CATEGORY, NODE_BLOCK_BYTES, Octree
+from elemental.passes.voxel.voxelize import append_fragments
+
+BEGIN = Compute("voxel/begin_step.comp.glsl")
+QUEUE = Compute("voxel/queue.comp.glsl")
+QUEUE_STILL = Compute("voxel/queue.comp.glsl", defines={"STILL": 1})
+MARK_MOVING = Compute("voxel/mark.comp.glsl", defines={"MOVING": 1})
+RELIGHT = Compute("voxel/relight.comp.glsl")
+REDUCE_DIRTY = Compute("voxel/reduce.comp.glsl", defines={"DIRTY": 1})
+SCAN_BLOCKS = Compute("voxel/scan_blocks.comp.glsl", defines={"KEEPS_SLOTS": 1})
+SCAN_GROUPS = Compute("voxel/scan_groups.comp.glsl", defines={"KEEPS_SLOTS": 1})
+SLOT_POOLS = Compute("voxel/slot_pools.comp.glsl")
+KEEP_SLOTS = Compute("voxel/keep_slots.comp.glsl")
+TAKE_SLOTS = Compute("voxel/take_slots.comp.glsl")
+NODES = Compute("voxel/nodes.comp.glsl", defines={"LISTS_DIRTY": 1})
+LISTS = Compute("voxel/lists.comp.glsl", defines={"LISTS_DIRTY": 1})
+UNLINK = Compute("voxel/unlink.comp.glsl")
+LINK_STILL = Compute("voxel/link.comp.glsl", defines={"KEPT_FRAGMENTS": 1})
+LINK_MOVING = Compute("voxel/link.comp.glsl", defines={"KEPT_FRAGMENTS": 2})
+RESOLVE = Compute("voxel/resolve.comp.glsl", defines={"KEPT_FRAGMENTS": 1})
+
+
+class Kept:
+    """What an octree of a scene with moving parts keeps from step to step, beside its pools.
+
+    Points are a bit each, of all levels: `still` of what never moves, `points` of everything,
+    `moving` of what moved into the last step.
+    """
+
+    def __init__(self, device: Device, octree: Octree) -> None:
+        grid, capacity = octree.grid, octree.capacity
+        self._buffers: list[Buffer] = []
+
+        def keep(name: str, nbytes: int) -> Buffer:
+            made = device.buffer(f"octree.{name}", max(nbytes, 16), category=CATEGORY)
+            self._buffers.append(made)
+            return made
+
+        points = grid.point_block_count * BLOCK_BYTES
+        self.fragments = keep(
+            "fragments", capacity.fragments * layouts().struct("VoxelFragment").itemsize
+        )
+        self.links = keep("links", capacity.fragments * 4)
+        self.heads = keep("heads", capacity.leaves * 8 * 8)
+        self.still_points = keep("still_points", points)
+        self.still_nodes = keep("still_nodes", grid.block_count * NODE_BLOCK_BYTES)
+        self.points = keep("points", points)
+        self.moving_points = keep("moving_points", points)
+        self.dirty = keep("dirty", points + grid.block_count * BLOCK_BYTES)
+        self.old_blocks = keep("old_blocks", octree.node_blocks.nbytes)
+        self.kept_sums = keep("kept_sums", grid.node_block_count * 8)
+        self.free_slots = keep("free_slots", sum(capacity.slots(grid.one_leaf_level)) * 4)
+        self.sided = keep("sided", capacity.interior * SIDED_BYTES_A_BRICK)
+
+    def release(self) -> None:
+        """Free all of it."""
+        for buffer in self._buffers:
+            buffer.release()
+
+
+def keep_still(g: Graph, scene: GpuScene, octree: Octree, kept: Kept) -> None:
+    """Rasterize what never moves, for all steps to come, and forget the steps so far."""
+    g.copy_buffer(octree.empty_state, octree.state)
+    append_fragments(g, scene, octree, kept.fragments, dynamic=False)
+    g.compute(QUEUE_STILL, writes={"State": octree.state}, params=octree.params, groups=1)
+    mark(g, octree, kept.fragments, kept.still_points, kept.still_nodes)
+    g.clear_buffer(kept.moving_points)
+
+
+def step(
+    g: Graph,
+    scene: GpuScene,
+    octree: Octree,
+    kept: Kept,
+    shadows: ShadowMaps,
+    casters: Sequence[Box],
+    everything: bool,
+) -> None:
+    """Bring nodes, bricks and leaf attributes up to what moved, and list what is dirty.
+
+    ``casters``: boxes in which something changed its shadow. ``everything``: list all that there
+    is, whatever is dirty.
+    """
+    state = {"State": octree.state}
+    g.compute(BEGIN, writes=state, params=octree.params, groups=1)
+    append_fragments(g, scene, octree, kept.fragments, dynamic=True)
+    g.compute(QUEUE, "voxelize.queue", writes=state, params=octree.params, groups=1)
+    _find_dirty(g, octree, kept, shadows, [] if everything else casters)
+    _give_slots(g, octree, kept)
+    list_dirty(g, octree, kept, everything)
+    _resolve(g, octree, kept)
+
+
+def _find_dirty(
+    g: Graph, octree: Octree, kept: Kept, shadows: ShadowMaps, casters: Sequence[Box]
+) -> None:
+    """The bits of points and nodes that there are now, and of those that are dirty."""
+    grid, state = octree.grid, {"State": octree.state}
+    points = {"Points": kept.points}
+    g.clear_buffer(kept.dirty)
+    g.copy_buffer(kept.moving_points, kept.dirty)
+    g.clear_buffer(kept.moving_points)
+    g.copy_buffer(kept.still_points, kept.points)
+    g.copy_buffer(octree.node_blocks, kept.old_blocks)
+    g.copy_buffer(kept.still_nodes, octree.node_blocks)
+    g.compute(
+        MARK_MOVING,
+        reads={**state, "Fragments": kept.fragments, "Regions": octree.regions},
+        writes={**points, "MovingPoints": kept.moving_points, "Dirty": kept.dirty},
+        params=octree.params,
+        indirect=(octree.state, state_offset("moving_fragments")),
+    )
+    if casters:
+        lights: dict[str, Ref] = shadows.reads()
+        g.compute(
+            RELIGHT,
+            reads={**points, **lights},
+            writes={"Dirty": kept.dirty},
+            params={**octree.params, **shadows.params(), "ChangedBoxes": _pack_boxes(casters)},
+            threads=grid.grid_blocks(grid.leaf_level + 1),
+        )
+    for level in range(grid.leaf_level, -1, -1):
+        g.compute(
+            REDUCE_DIRTY,
+            f"reduce.dirty.{level}",
+            reads={"Regions": octree.regions},
+            writes={**points, "NodeBlocks": octree.node_blocks, "Dirty": kept.dirty},
+            params={**octree.params, "OctreeLevel": level_params(level)},
+            threads=grid.grid_blocks(level + 1),
+        )
+
+
+def _pack_boxes(boxes: Sequence[Box]) -> Block:
+    """The ChangedBoxes block."""
+    corners = np.zeros((2, boxes_max(), 4), np.float32)
+    for number, (low, high) in enumerate(boxes):
+        corners[0, number, :3], corners[1, number, :3] = low, high
+    return pack(
+        layouts().block("ChangedBoxes"), low_ws=corners[0], high_ws=corners[1], count=len(boxes)
+    )
+
+
+def boxes_max() -> int:
+    """How many boxes of casters a step looks at; beyond, everything is lit anew."""
+    return int(layouts().constant("CHANGED_BOXES_MAX"))
+
+
+def _give_slots(g: Graph, octree: Octree, kept: Kept) -> None:
+    """A slot for every brick and tile."""
+    grid, state, params = octree.grid, {"State": octree.state}, octree.params
+    blocks, before = {"NodeBlocks": octree.node_blocks}, {"OldBlocks": kept.old_blocks}
+    sums = {"KeptSums": kept.kept_sums}
+    g.compute(
+        SCAN_BLOCKS,
+        reads=before,
+        writes={**blocks, **sums},
+        params=params,
+        groups=grid.scan_groups,
+    )
+    g.compute(
+        SCAN_GROUPS,
+        reads=before,
+        writes={**blocks, **sums, **state},
+        params=params,
+        groups=1,
+    )
+    g.compute(SLOT_POOLS, reads={**blocks, **before, **sums}, writes=state, params=params, groups=1)
+    free = {"FreeSlots": kept.free_slots}
+    g.compute(
+        KEEP_SLOTS,
+        reads={**before, **sums, **state},
+        writes={**blocks, **free},
+        params=params,
+        threads=max(grid.block_count, octree.capacity.bricks, octree.capacity.tiles),
+    )
+    g.compute(
+        TAKE_SLOTS,
+        reads={**before, **sums, **state},
+        writes={**blocks, **free},
+        params=params,
+        threads=grid.block_count,
+    )
+
+
+def list_dirty(g: Graph, octree: Octree, kept: Kept, everything: bool) -> None:
+    """Write the nodes; list the voxels and bricks that are dirty, or all of them."""
+    step_params = pack(layouts().block("OctreeStep"), everything=everything)
+    g.compute(
+        NODES,
+        reads={
+            "Points": kept.points,
+            "NodeBlocks": octree.node_blocks,
+            "Regions": octree.regions,
+            "Dirty": kept.dirty,
+        },
+        writes={
+            "State": octree.state,
+            "Nodes": octree.nodes,
+            "Bricks": octree.bricks,
+            "VoxelList": octree.voxel_list,
+        },
+        params={**octree.params, "OctreeStep": step_params},
+        threads=octree.grid.block_count,
+    )
+    g.compute(LISTS, writes={"State": octree.state}, params=octree.params, groups=1)
+
+
+def list_everything(g: Graph, octree: Octree, kept: Kept) -> None:
+    """List all voxels and bricks of the last step: for a change of light."""
+    g.compute(BEGIN, writes={"State": octree.state}, params=octree.params, groups=1)
+    list_dirty(g, octree, kept, everything=True)
+
+
+def _resolve(g: Graph, octree: Octree, kept: Kept) -> None:
+    """Leaf attributes of the listed voxels, from still and moving fragments."""
+    state, params = {"State": octree.state}, octree.params
+    if not octree.grid.one_leaf_level:
+        # A coarser leaf lends its empty voxels, too.
+        g.clear_buffer(octree.attributes)
+        g.clear_buffer(octree.radiance)
+    heads, links = {"Heads": kept.heads}, {"Links": kept.links}
+    g.compute(
+        UNLINK,
+        reads=state,
+        writes=heads,
+        params=params,
+        indirect=(octree.state, state_offset("relinked_voxels")),
+    )
+    for shader, name, threads in (
+        (LINK_STILL, "link.still", "relinked_fragments"),
+        (LINK_MOVING, "link.moving", "moving_fragments"),
+    ):
+        g.compute(
+            shader,
+            name,
+            reads={
+                **state,
+                "Regions": octree.regions,
+                "NodeBlocks": octree.node_blocks,
+                "Fragments": kept.fragments,
+            },
+            writes={**heads, **links},
+            params=params,
+            indirect=(octree.state, state_offset(threads)),
+        )
+    g.compute(
+        RESOLVE,
+        reads={**state, "Fragments": kept.fragments, "VoxelList": octree.voxel_list, **links},
+        writes={"Attributes": octree.attributes, **heads},
+        params=params,
+        indirect=(octree.state, state_offset("leaf_voxels")),
+    )

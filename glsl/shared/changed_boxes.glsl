@@ -1,0 +1,8 @@
+// World boxes in which something that casts shadows changed: as it was, and as it is.
+const int CHANGED_BOXES_MAX = 32;
+
+layout(std140) uniform ChangedBoxes {
+    vec4 low_ws[32];   // xyz
+    vec4 high_ws[32];
+    int count;
+} u_changed;
