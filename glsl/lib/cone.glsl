@@ -12,8 +12,8 @@
 
 // Content-adaptive steps, in voxels of the cone's level: a long one after a clear sample lands at most
 // on the middle of the next surface, a short one never steps over it.
-const float CONE_STEP = 0.6;
-const float CONE_STEP_CLEAR = 0.8;
+const float CONE_STEP = 0.5;
+const float CONE_STEP_CLEAR = 0.75;
 const float CONE_CLEAR = 0.02;         // opacity below which a sample counts as clear
 const float CONE_OPAQUE = 0.98;        // stop where this much is hidden
 const float CONE_SKIP_EPSILON = 0.01;  // finest voxels past the far side of an empty node
@@ -24,15 +24,36 @@ int cone_steps = 0;  // samples taken by this invocation's cones
 // Cone widths a voxel: a trilinear lookup of a tent-filtered level already sees about two voxels.
 const float CONE_FOOTPRINT = 2.0;
 
-// Extinction a voxel length of a sample with the opacity a. Trilinear filtering spreads a one-voxel
-// layer of opacity A into the profile A (1 - |x|); this is the function whose integral over that
-// profile is -ln(1 - A), so a layer hides what it covers: solve (2/A) int_0^A e(s) ds = -ln(1 - A).
-// The last factor is for samples that fall beside the middle of a layer, and for layers that the lattice
-// cuts at an angle: their voxels stand in steps. [inferred: (1-a)^(step) leaks 14 % of an opaque layer;
-// docs/gi.md has what the factor closes and what it costs]
-float voxel_extinction(float a) {
-    float clear = max(1.0 - a, 1.0 / 512.0);
-    return 0.5 * (a / clear - log(clear)) * (1.0 + 3.0 * a * a * a * a);
+// What hides. Trilinear filtering spreads a one-voxel layer that covers the share A of the cone's width
+// into the profile A (1 - |x|): its integral over the way, in voxels, is A again, whatever the phase of
+// steps of half a voxel. What covers a part of the cone along a longer way, as a wall beside it does, has
+// a larger integral but hides no more. So the samples between two clear ones, a run, hide their integral,
+// or as much as the fullest of them says where that is less. [inferred: products of each step's
+// transparency hide all of a cone that a wall's edge covers by two thirds]
+struct Run {
+    float integral;   // of opacity
+    float fullest;    // sample
+    float hides;      // share of what arrived at the run
+    float arrived;    // share of the cone
+};
+const float FULLEST = 0.7;        // of a layer's opacity that the fullest sample has at least
+// Coarse levels' layers are a little thicker than a voxel; the finest level's voxels stand in steps where
+// the lattice cuts a layer at an angle, and a narrow cone meets fewer of them than there are on average.
+const float COARSE_SHARE = 0.87;
+const float FINEST_SHARE = 1.3;
+
+// Nearly all or nearly nothing is all or nothing: sums over steps are off by some percent.
+float layer_opacity(float covered) { return covered * covered * (3.0 - 2.0 * covered); }
+
+// Adds a sample of the opacity a that stands for so many voxels of the way; returns the share of the
+// cone that it hides anew.
+float extend(inout Run run, float a, float voxels, float lod) {
+    run.integral += mix(FINEST_SHARE, COARSE_SHARE, min(lod, 1.0)) * a * voxels;
+    run.fullest = max(run.fullest, a);
+    float hides = layer_opacity(min(min(run.integral, run.fullest / FULLEST), 1.0));
+    float fresh = run.arrived * max(hides - run.hides, 0.0);
+    run.hides = max(run.hides, hides);
+    return fresh;
 }
 
 // Distance, in finest voxels, from p along direction to where it leaves the cell.
@@ -111,6 +132,8 @@ vec4 cone_trace_between(vec3 Pos, vec3 Direction, float ConeAngle, float start_m
     float t = start_m / u_octree.voxel_m;
     float end = end_m / u_octree.voxel_m;
     vec4 gathered = vec4(0.0);
+    Run run = Run(0.0, 0.0, 0.0, 1.0);
+    float gap = 0.0;  // voxels since the last sample, clear nodes left out
     for (int i = 0; i < CONE_STEPS_MAX && t < end; ++i) {
 #if COUNT_CONE_STEPS
         ++cone_steps;
@@ -121,15 +144,19 @@ vec4 cone_trace_between(vec3 Pos, vec3 Direction, float ConeAngle, float start_m
         if (any(lessThan(p, vec3(0.0))) || any(greaterThanEqual(p, vec3(side)))) break;
         float lod = min(log2(width), lod_last);
         ConeSample s = cone_sample(p, lod, guarded, inverse_direction, view);
-        if (s.empty_exit > 0.0) {
-            t += max(s.empty_exit + CONE_SKIP_EPSILON, width * CONE_STEP);
+        if (s.value.a < CONE_CLEAR) {
+            float clear_step = CONE_STEP_SHARE * width * CONE_STEP_CLEAR;
+            float way = s.empty_exit > 0.0 ? max(s.empty_exit + CONE_SKIP_EPSILON, width * CONE_STEP) : clear_step;
+            gap = min(way - s.empty_exit, clear_step) / width;
+            t += way;
+            run = Run(0.0, 0.0, 0.0, 1.0 - gathered.a);
             continue;
         }
-        float advance = CONE_STEP_SHARE * width * (s.value.a < CONE_CLEAR ? CONE_STEP_CLEAR : CONE_STEP);
-        t += advance;
-        if (s.value.a <= 0.0) continue;
-        float hidden = 1.0 - exp(-voxel_extinction(s.value.a) * advance * exp2(-lod));
-        gathered += (1.0 - gathered.a) * vec4(s.value.rgb * (hidden / s.value.a), hidden);
+        const float voxel_step = CONE_STEP_SHARE * CONE_STEP;
+        float fresh = extend(run, s.value.a, 0.5 * (gap + voxel_step), lod);
+        gathered += fresh * vec4(s.value.rgb / s.value.a, 1.0);
+        gap = voxel_step;
+        t += width * voxel_step;
         if (gathered.a > CONE_OPAQUE) {
             gathered /= gathered.a;
             break;

@@ -51,8 +51,8 @@ def pixels(path: Path) -> NDArray[np.uint8]:
 
 
 def assert_alike(a: NDArray[np.int64], b: NDArray[np.int64]) -> None:
-    """Equal but for the rounding of depths and positions: 1 % of pixels over 2/255, single ones, whose
-    cone just meets an edge or misses it, up to 16."""
+    """Equal but for rounding: 1 % of the pixels over 2/255; single ones up to 16, where a cone just
+    meets an edge or misses it."""
     difference = np.abs(a - b).max(axis=2)
     assert difference.max() <= 16
     assert (difference > 6).mean() <= 0.002

@@ -1,3 +1,4 @@
+# GI-14
 """The environment's cone pyramid: constants stay, the mean stays, cones average what they see."""
 
 from __future__ import annotations

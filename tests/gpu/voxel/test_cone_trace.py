@@ -77,10 +77,10 @@ def test_a_cone_into_a_plane_returns_its_radiance(
 
 Normal = tuple[int, int, int]
 LEAST_OPACITY: dict[Normal, float] = {
-    (1, 1, 0): 0.91,
-    (1, 1, 1): 0.79,
-    (2, 1, 0): 0.91,
-    (3, 10, 1): 0.95,
+    (1, 1, 0): 0.96,
+    (1, 1, 1): 0.84,
+    (2, 1, 0): 0.97,
+    (3, 10, 1): 0.98,
 }
 """What a sheet of that normal hides at least, as a mean over cones straight into it."""
 LEAST_SHOWN = 0.985
@@ -127,9 +127,9 @@ def test_occlusion_behind_a_half_plane_follows_the_covered_fraction(
     stage: MakeStage, half_angle: float
 ) -> None:
     error = coverage_errors(stage, half_angle)
-    assert np.abs(error).max() <= 0.35
-    assert np.abs(error.mean()) <= 0.09
-    assert np.sqrt((error**2).mean()) <= 0.11
+    assert np.abs(error).max() <= 0.3
+    assert np.abs(error).mean() <= (0.05 if half_angle < 0.4 else 0.07)
+    assert np.abs(error.mean()) <= 0.05
 
 
 def test_empty_space_is_clear_and_black(stage: MakeStage) -> None:
