@@ -1,4 +1,7 @@
-"""Writes content/scenes/atrium/atrium.glb and sky.hdr: `python tools/make_atrium.py [FOLDER]`."""
+"""Writes content/scenes/atrium's files: `python tools/make_atrium.py [FOLDER]`.
+
+atrium.glb, orb.glb, a glowing ball to move about in it, and sky.hdr.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +15,7 @@ from atrium.layout import places
 from atrium.materials import MATERIALS, MaterialWriter
 from atrium.mesh import indexed
 from atrium.prototypes import PROTOTYPES
+from atrium.shapes import revolve
 from atrium.sky import sky_hdr
 
 FOLDER = Path(__file__).resolve().parent.parent / "content" / "scenes" / "atrium"
@@ -51,12 +55,31 @@ def atrium_glb() -> tuple[bytes, int]:
     return glb.bytes(["KHR_materials_emissive_strength"]), total
 
 
+def orb_glb() -> bytes:
+    """A ball of radius 0.35 m around the origin, warm, of a radiance of about 6."""
+    angles = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 17)
+    profile = [(0.35 * float(np.cos(a)), 0.35 * float(np.sin(a))) for a in angles]
+    glb = GlbWriter()
+    material = {
+        "name": "orb",
+        "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0.0},
+        "emissiveFactor": [1.0, 0.72, 0.4],
+        "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 6.0}},
+    }
+    mesh = indexed(revolve(profile, 32), 60.0, 1.0)
+    primitive = {**glb.primitive(mesh), "material": glb.add("materials", material)}
+    shape = glb.add("meshes", {"name": "orb", "primitives": [primitive]})
+    glb.node("orb", shape, (0.0, 0.0, 0.0), 0.0, 1.0)
+    return glb.bytes(["KHR_materials_emissive_strength"], "orb")
+
+
 def main() -> None:
-    """Write both files and say how large they are."""
+    """Write all files and say how large they are."""
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else FOLDER
     folder.mkdir(parents=True, exist_ok=True)
     scene, triangle_count = atrium_glb()
     (folder / "atrium.glb").write_bytes(scene)
+    (folder / "orb.glb").write_bytes(orb_glb())
     sky = sky_hdr()
     (folder / "sky.hdr").write_bytes(sky)
     print(f"{triangle_count} triangles; atrium.glb {len(scene)} bytes, sky.hdr {len(sky)} bytes")

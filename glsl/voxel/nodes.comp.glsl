@@ -83,9 +83,17 @@ void list_brick(uint brick, int level, uvec3 cell) {
     else place += atomicAdd(octree_state.interior_bricks.threads, 1u);
     voxel_list[place] = brick;
 }
+// Whether any of a block's nodes is dirty. Where none is, its nodes and tiles stay as they are: what
+// they say changes with points of their own footprints alone, but for what dense nodes say of the
+// emptiness above them.
+bool block_is_dirty(uint block) {
+    uint word = grid_first_block(u_octree.leaf_level + 2) * 2u + block * 2u;
+    return u_step.everything != 0 || octree_state.fresh != 0u || (dirty_words[word] | dirty_words[word + 1u]) != 0u;
+}
 #else
 uint dirty_points(int level, uvec3 cell) { return 0xffu; }
 void list_brick(uint brick, int level, uvec3 cell) {}
+bool block_is_dirty(uint block) { return true; }
 #endif
 
 // Lists voxels of a brick: a leaf's to be lit, others' to be filtered.
@@ -144,7 +152,7 @@ void main() {
     int level = grid_of_block(block);
     uvec2 bits = block_bits(block);
     bool dense = level <= u_octree.top_level;
-    if (!dense && bits == uvec2(0u)) return;
+    if (!dense && (bits == uvec2(0u) || !block_is_dirty(block))) return;
 
     uvec2 rank = block_rank(block);
     uint first_code = (block - grid_first_block(level)) * 64u;
