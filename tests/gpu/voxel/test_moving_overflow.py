@@ -1,0 +1,171 @@
+# GI-02 GI-05
+"""Crowds in pools that are too small: nothing is written past their end, drops are counted, what is
+left is a fresh build's, and larger pools make it whole."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from elemental.core.layout import layouts
+from elemental.frame import Renderer
+from elemental.gpu.device import Device
+from elemental.gpu.resources import Buffer
+from elemental.passes.voxel.lighting import VoxelLighting
+from elemental.passes.voxel.octree import Capacity
+from elemental.settings import Settings
+from gpu.rig import camera, vector
+from gpu.voxel.pools import read_leaves, read_sided
+from gpu.voxel.stage import Lit, Stage
+from gpu.voxel.test_moving_octree import fresh
+from gpu.voxel.test_pool_overflow import CANARY
+from gpu.voxel.walk import Walk, assert_same, held, show, world
+
+Array = npt.NDArray[Any]
+BODIES = 200
+
+
+def crowd(device: Device, resolution: int) -> tuple[Lit, Walk, VoxelLighting]:
+    lit = Lit(device, world(BODIES, seed=4))
+    lit.scene.lights = lit.scene.lights[:1]
+    walk = Walk(lit.scene, np.random.default_rng(2), 0.5)
+    lit.gpu.update(walk.pose())
+    return lit, walk, lit.lighting(resolution)
+
+
+def tell(voxels: VoxelLighting, told: Capacity) -> dict[str, tuple[Buffer, int]]:
+    """Tell the GPU of a smaller capacity than the pools have. What they hold past their told end,
+    now canaries: by name, the buffer and the bytes told."""
+    octree, kept = voxels.octree, voxels._kept
+    assert kept is not None
+    grid, size = octree.grid, {n: layouts().struct(n).itemsize for n in ("Node", "Brick")}
+    octree.capacity = told
+    block = octree._pack(*(octree_atlas(voxels)))
+    octree.params = {"Octree": block}
+    ends = {
+        "nodes": (octree.nodes, (grid.dense_nodes + 8 * told.tiles) * size["Node"]),
+        "bricks": (octree.bricks, told.bricks * size["Brick"]),
+        "node blocks": (
+            octree.node_blocks, grid.node_block_count * 16 + (told.bricks + told.tiles) * 4
+        ),
+        "lists": (octree.voxel_list, (octree._listed_voxels() + told.bricks) * 4),
+        "attributes": (octree.attributes, told.leaves * 8 * 12),
+        "radiance": (octree.radiance, told.leaves * 8 * 8),
+        "fragments": (kept.fragments, told.fragments * 16),
+        "links": (kept.links, told.fragments * 4),
+        "heads": (kept.heads, told.leaves * 8 * 8),
+        "free slots": (kept.free_slots, sum(told.slots(one_leaf_level=True)) * 4),
+        "sided": (kept.sided, told.interior * 8 * 6 * 8),
+    }  # fmt: skip
+    ends = {name: (buffer, end) for name, (buffer, end) in ends.items() if end < buffer.nbytes}
+    for buffer, end in ends.values():
+        canaries = np.full((buffer.nbytes - end) // 4, CANARY, np.uint32)
+        buffer.write(canaries.tobytes(), end)
+    return ends
+
+
+def octree_atlas(voxels: VoxelLighting) -> tuple[Any, Any]:
+    """The places of bricks in the atlases, which stay as they were made."""
+    block = voxels.octree.params["Octree"]
+    return tuple(
+        SimpleNamespace(side_log2=block[f"{name}_side_log2"], texel=block[f"{name}_texel"])
+        for name in ("atlas", "leaf_atlas")
+    )  # type: ignore[return-value]
+
+
+SHARES: dict[str, dict[str, float]] = {
+    "fragments": {"fragments": 0.6},
+    "tiles": {"tiles": 0.6},
+    "leaves": {"bricks": 0.7, "leaves": 0.6},
+    "interior": {"interior": 0.7},
+    "a little": {"bricks": 0.76, "leaves": 0.74, "tiles": 0.75},
+}
+
+
+@pytest.mark.parametrize("case", SHARES)
+def test_nothing_is_written_past_full_pools_while_things_move(
+    device: Device, monkeypatch: pytest.MonkeyPatch, case: str
+) -> None:
+    lit, walk, voxels = crowd(device, 32)
+    full = voxels.octree.capacity
+    told = replace(full, **{k: int(getattr(full, k) * v) for k, v in SHARES[case].items()})
+    ends = tell(voxels, told)
+    grow = voxels._room_for
+    monkeypatch.setattr(voxels, "_room_for", lambda counts: told)  # no room to grow to
+    dropped = []
+    for _ in range(25):
+        show(device, lit, voxels, walk.step())
+        dropped.append(voxels.counts.overflowed)
+        assert voxels.counts.bricks <= told.bricks
+        assert voxels.counts.tiles <= told.tiles
+        assert voxels.counts.fragments <= told.fragments
+    assert any(dropped)
+    for name, (buffer, end) in ends.items():
+        assert (buffer.read(np.uint32, offset=end) == CANARY).all(), name
+    stage = cast(Stage, SimpleNamespace(device=device, octree=voxels.octree, counts=SimpleNamespace(
+        interior=full.interior, bricks=full.bricks)))  # fmt: skip
+    coarse, _, finest, _ = told.slots(one_leaf_level=True)
+    assert not read_sided(stage)[coarse:].any()
+    assert not read_leaves(stage)[finest:].any()
+    other = VoxelLighting(device, lit.gpu, voxels.octree.grid, 1.0, 3.0, 1, capacity=told)
+    show(device, lit, other, walk.pose())
+    assert voxels.counts == other.counts
+    if not voxels.counts.fragments_dropped:  # which ones is left to chance
+        assert_same(held(voxels.octree), held(other.octree))
+    other.release()
+
+    monkeypatch.setattr(voxels, "_room_for", grow)  # the budget is raised
+    voxels.invalidate("geometry")
+    for _ in range(4):
+        show(device, lit, voxels, walk.pose())
+    assert not voxels.counts.overflowed
+    whole = fresh(lit, voxels)
+    assert_same(held(voxels.octree), held(whole.octree))
+    for item in (voxels, whole, lit):
+        item.release()
+
+
+def test_a_crowd_in_too_small_a_budget_is_still_a_picture(device: Device) -> None:
+    """And that of enough memory once the budget is raised."""
+    scene = world(BODIES, seed=4)
+    scene.lights = scene.lights[:1]
+    settings = Settings().replace({"gi.resolution": 64, "gi.memory_budget_mb": 16})
+    renderer = Renderer(device, scene, settings, (48, 32))
+    eye = camera(vector(0, 0.4, 2.4), vector(0, -0.2, 0))
+    walk = Walk(scene, np.random.default_rng(3), 0.5)
+    voxels = renderer.render(eye, 0.0, 0, "scene_color", walk.pose()).voxels
+    assert voxels is not None
+    voxels.budget_bytes = 1 << 21
+    voxels.release()
+    octree = voxels.octree
+    voxels._allocate(octree.grid, voxels._room_for(lit_counts(voxels)), octree.max_emission)
+    voxels.invalidate("geometry")
+
+    def picture(frame: int) -> Array:
+        made = renderer.read(renderer.render(eye, 0.0, frame, "scene_color", walk.step()))
+        device.finish()
+        assert np.isfinite(made).all()
+        assert 0.0 <= made.min() <= made.max() < 100.0
+        return made
+
+    pictures = [picture(frame) for frame in range(12)]
+    assert voxels.counts.bricks_dropped > 0
+    assert voxels.octree.capacity.nbytes() <= 1 << 21
+    assert all(p[..., :3].mean() > 0.05 for p in pictures)
+    voxels.budget_bytes = 1 << 28
+    for frame in range(4):
+        picture(frame)
+    assert not voxels.counts.overflowed
+    renderer.release()
+
+
+def lit_counts(voxels: VoxelLighting) -> Any:
+    """What the octree asks for, as the frames so far counted."""
+    voxels.device.finish()
+    assert voxels.counts.bricks > 0
+    return voxels.counts
