@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from elemental.passes.sky import Sky
 
 LIGHT = Compute("voxel/light.comp.glsl")
-LIGHT_AND_GATHER = Compute("voxel/light.comp.glsl", defines={"GATHER": 1})
+LIGHT_AND_GATHER = Compute("voxel/light.comp.glsl", defines={"GATHER": 1, "CONE_SPLIT": 1})
 SIDED_BYTES_A_BRICK = 8 * 6 * 8
 
 
