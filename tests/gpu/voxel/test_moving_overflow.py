@@ -130,6 +130,35 @@ def test_nothing_is_written_past_full_pools_while_things_move(
         item.release()
 
 
+def test_a_crowd_that_comes_and_goes(device: Device, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Slots stay right through frames that overflow and frames that do not."""
+    lit, walk, voxels = crowd(device, 32)
+    walk.visible[:], few = True, np.arange(BODIES) % 20 == 0
+    show(device, lit, voxels, replace(walk.pose(), visible=few))
+    needed = voxels.counts
+    interior, leaves = needed.interior + 30, needed.leaves + 60
+    told = replace(
+        voxels.octree.capacity, bricks=interior + leaves, interior=interior, leaves=leaves
+    )
+    voxels.release()
+    voxels._allocate(voxels.octree.grid, told, voxels.octree.max_emission)
+    voxels.invalidate("geometry")
+    monkeypatch.setattr(voxels, "_room_for", lambda counts: told)
+    dropped = []
+    for frame in range(9):
+        walk.world[0][0, 3] += 0.02
+        everyone = frame % 3 == 1
+        pose = walk.pose() if everyone else replace(walk.pose(), visible=few)
+        show(device, lit, voxels, pose)
+        dropped.append(voxels.counts.overflowed)
+        other = fresh(lit, voxels)
+        assert_same(held(voxels.octree), held(other.octree))
+        other.release()
+    assert dropped == [False, True, False] * 3
+    for item in (voxels, lit):
+        item.release()
+
+
 def test_a_crowd_in_too_small_a_budget_is_still_a_picture(device: Device) -> None:
     """And that of enough memory once the budget is raised."""
     scene = world(BODIES, seed=4)
