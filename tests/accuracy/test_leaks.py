@@ -13,14 +13,14 @@ from elemental.gpu.device import Device
 
 REACHED = {
     (1.0, "straight"): 0.024,
-    (1.0, "turned"): 0.015,
-    (1.0, "diagonal"): 0.011,
-    (2.0, "straight"): 0.008,
-    (2.0, "turned"): 0.008,
-    (2.0, "diagonal"): 0.010,
-    (4.0, "straight"): 0.004,
-    (4.0, "turned"): 0.003,
-    (4.0, "diagonal"): 0.003,
+    (1.0, "turned"): 0.016,
+    (1.0, "diagonal"): 0.012,
+    (2.0, "straight"): 0.009,
+    (2.0, "turned"): 0.009,
+    (2.0, "diagonal"): 0.012,
+    (4.0, "straight"): 0.005,
+    (4.0, "turned"): 0.004,
+    (4.0, "diagonal"): 0.004,
 }
 """Share of the bright room's light, a mean over the sealed one's walls; by voxels and turn."""
 SPOT = 8.0
