@@ -78,7 +78,7 @@ def main() -> None:
         case = replace(case, settings=(*case.settings, *words.set))
         now = ratchet.figures(ratchet.draw(device, case), *ratchet.read_reference(case.file))
         before = table["cases"].get(name, now)
-        line = "  ".join(f"{key} {before[key]:.4f} -> {now[key]:.4f}" for key in now)
+        line = "  ".join(f"{key} {before[key]:+.4f} -> {now[key]:+.4f}" for key in now)
         print(f"{name:20s} {line}  {'WORSE' if ratchet.worse(now, before) else ''}", flush=True)
         table["cases"][name] = {key: round(value, 4) for key, value in now.items()}
     if not (words.dry or words.set):

@@ -12,13 +12,13 @@ from accuracy.sealed import PHASES, leak
 from elemental.gpu.device import Device
 
 REACHED = {
-    (1.0, "straight"): 0.024,
-    (1.0, "turned"): 0.016,
-    (1.0, "diagonal"): 0.012,
-    (2.0, "straight"): 0.009,
-    (2.0, "turned"): 0.009,
+    (1.0, "straight"): 0.028,
+    (1.0, "turned"): 0.018,
+    (1.0, "diagonal"): 0.013,
+    (2.0, "straight"): 0.011,
+    (2.0, "turned"): 0.01,
     (2.0, "diagonal"): 0.012,
-    (4.0, "straight"): 0.005,
+    (4.0, "straight"): 0.0055,
     (4.0, "turned"): 0.004,
     (4.0, "diagonal"): 0.004,
 }
