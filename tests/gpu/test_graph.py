@@ -243,6 +243,20 @@ def test_a_broken_frame_leaves_the_device_usable(
     test_compute_then_raster_by_name(device, fill, double)
 
 
+def test_copy_of_a_layer(device: Device) -> None:
+    graph = device.begin_frame()
+    four, other = (graph.texture(name, (4, 4), R32UI, layers=3) for name in ("four", "other"))
+    graph.clear_texture(four, (4,))
+    graph.clear_texture(other, (9,))
+    graph.copy_texture(four, other, layer=1)
+    with pytest.raises(GraphError, match="no layer 3"):
+        graph.copy_texture(four, other, layer=3)
+    graph.keep(other)
+    graph.execute()
+    assert other.physical
+    assert other.physical.read()[:, 0, 0, 0].tolist() == [9, 4, 9]
+
+
 def test_clear_and_copy(device: Device) -> None:
     graph = device.begin_frame()
     color = graph.texture("color", (8, 4), RGBA16F, mips=2)

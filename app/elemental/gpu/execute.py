@@ -259,9 +259,10 @@ class Executor:
         if node.span is None:
             for level in range(source.mips):
                 width, height, slices = source.extent(level)
-                ends = (source.glo, source.target, level, 0, 0, 0)
-                to = (target.glo, target.target, level, 0, 0, 0)
-                gl.glCopyImageSubData(*ends, *to, width, height, slices)
+                first, count = (0, slices) if node.layer is None else (node.layer, 1)
+                ends = (source.glo, source.target, level, 0, 0, first)
+                to = (target.glo, target.target, level, 0, 0, first)
+                gl.glCopyImageSubData(*ends, *to, width, height, count)
             return
         gl.glBindBuffer(c.COPY_READ_BUFFER, source.glo)
         gl.glBindBuffer(c.COPY_WRITE_BUFFER, target.glo)

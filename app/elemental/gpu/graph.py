@@ -243,12 +243,15 @@ class Graph:
         node.span = (src_offset, dst_offset, length)
         self._add_copy(node, c.BUFFER_UPDATE_BARRIER, length == dst.nbytes)
 
-    def copy_texture(self, src: AnyTexture, dst: AnyTexture) -> None:
-        """Copy every texel of every level; both have one description."""
+    def copy_texture(self, src: AnyTexture, dst: AnyTexture, layer: int | None = None) -> None:
+        """Copy every texel of every level, or of one ``layer``; both have one description."""
         if src.desc != dst.desc:
             raise GraphError(f"copy {src.name} to {dst.name}: {src.desc} is not {dst.desc}")
+        if layer is not None and not 0 <= layer < (src.desc.layers or 0):
+            raise GraphError(f"copy {src.name}: it has no layer {layer}")
         node = Copy(f"copy {src.name}", self._index(src), self._index(dst))
-        self._add_copy(node, c.TEXTURE_UPDATE_BARRIER, True)
+        node.layer = layer
+        self._add_copy(node, c.TEXTURE_UPDATE_BARRIER, layer is None)
 
     def _add_copy(self, node: Copy, bit: int, whole: bool) -> None:
         node.reads.append(node.source)

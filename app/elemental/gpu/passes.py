@@ -94,14 +94,16 @@ class ClearBuffer(Pass):
 
 
 class Copy(Pass):
-    """A copy between two buffers (``span``: source offset, target offset, bytes) or textures."""
+    """A copy between two buffers (``span``: source offset, target offset, bytes) or textures, whole
+    or a ``layer``."""
 
-    __slots__ = ("source", "span", "target")
+    __slots__ = ("layer", "source", "span", "target")
 
     def __init__(self, name: str, source: int, target: int) -> None:
         super().__init__(name)
         self.source, self.target = source, target
         self.span: tuple[int, int, int] | None = None
+        self.layer: int | None = None
 
 
 class Readback(Pass):

@@ -2,6 +2,9 @@
 
 A directional light has one map of the whole scene, which lights voxels whatever the camera does,
 and cascades for what the camera sees; a spot light has one map, a point light six.
+
+Where parts of the scene can move, what stands has maps of its own: a map that only moving things
+changed begins with a copy of these.
 """
 
 from __future__ import annotations
@@ -49,6 +52,8 @@ class ShadowMaps:
         self._buffers: dict[str, Buffer] = {}
         self._uploaded: dict[str, bytes] = {}
         self._drawn: dict[int, bytes] = {}
+        self._still: Texture | None = None
+        self._still_drawn: dict[int, bytes] = {}
         self._drawn_version = 0
 
     def reads(self) -> dict[str, Ref]:
@@ -62,17 +67,18 @@ class ShadowMaps:
 
     def release(self) -> None:
         """Free the maps and the buffers."""
-        if self._maps is not None:
-            self._maps.release()
-            self._maps = None
+        for maps in (self._maps, self._still):
+            if maps is not None:
+                maps.release()
+        self._maps = self._still = None
         for buffer in self._buffers.values():
             buffer.release()
-        for held in (self._buffers, self._uploaded, self._drawn):
+        for held in (self._buffers, self._uploaded, self._drawn, self._still_drawn):
             held.clear()
 
     def place(self, plan: ShadowPlan, scene: GpuScene) -> list[int]:
         """Upload a plan. Returns the numbers of the views whose map has to be drawn anew."""
-        self._allocate(plan.layers)
+        self._allocate(plan.layers, bool(scene.dynamic.any() and not scene.dynamic.all()))
         self._upload("Lights", plan.lights)
         self._upload("ShadowViews", plan.views)
         light_fields = [name for name in plan.lights.dtype.names or () if "cascade" not in name]
@@ -95,8 +101,11 @@ class ShadowMaps:
             return
         if scene.version != drawn + 1:
             self._drawn.clear()
+            self._still_drawn.clear()
             return
         casters = [change for change in scene.changes if change.casts]
+        if not all(scene.dynamic[change.instance] for change in casters):
+            self._still_drawn.clear()
         boxes = [box for change in casters for box in (change.before, change.after) if box]
         if not boxes:
             return
@@ -113,17 +122,43 @@ class ShadowMaps:
         assert self._maps is not None
         return Layer(self._maps, number)
 
-    def _allocate(self, layers: int) -> None:
+    def still_target(self, number: int, plan: ShadowPlan) -> tuple[Layer, bool] | None:
+        """The layer of what stands as one view sees it, and whether it has to be drawn anew; None
+        where maps are drawn whole."""
+        if self._still is None:
+            return None
+        content = plan.views[number].tobytes()
+        stale = self._still_drawn.get(number) != content
+        self._still_drawn[number] = content
+        return Layer(self._still, number), stale
+
+    def copy_still(self, g: Graph, number: int) -> None:
+        """Begin a view's map with what stands."""
+        assert self._still is not None
+        assert self._maps is not None
+        g.copy_texture(self._still, self._maps, layer=number)
+
+    def _allocate(self, layers: int, moves: bool) -> None:
         """At least so many layers; a single texel where no light may look."""
         texels = self.settings.resolution if layers else 1
         if self._maps is not None:
             if layers <= (self._maps.layers or 0) and texels <= self._maps.width:
                 return
             self._maps.release()
+            if self._still is not None:
+                self._still.release()
+                self._still = None
         self._drawn.clear()
-        self._maps = self._device.texture(
-            "shadow.maps", (texels, texels), D32F, layers=max(layers, 1), category="targets"
-        )
+        self._still_drawn.clear()
+
+        def maps(name: str) -> Texture:
+            return self._device.texture(
+                name, (texels, texels), D32F, layers=max(layers, 1), category="targets"
+            )
+
+        self._maps = maps("shadow.maps")
+        if moves and layers:
+            self._still = maps("shadow.still_maps")
 
     def _upload(self, name: str, values: Array) -> None:
         content = values.tobytes()
@@ -157,24 +192,48 @@ def update_shadows(
 
 def _draw_view(g: Graph, maps: ShadowMaps, scene: GpuScene, plan: ShadowPlan, number: int) -> None:
     name = f"shadow.{plan.names[number]}"
+    scene.look(f"shadow.{number}", plan.views[number]["clip_from_world"].T)
+    still = maps.still_target(number, plan)
+    if still is None:
+        _draw_casters(g, maps, scene, number, name, maps.target(number), None)
+        return
+    target, stale = still
+    if stale:
+        _draw_casters(g, maps, scene, number, f"{name}.still", target, False)
+    maps.copy_still(g, number)
+    _draw_casters(g, maps, scene, number, name, maps.target(number), True)
+
+
+def _draw_casters(
+    g: Graph,
+    maps: ShadowMaps,
+    scene: GpuScene,
+    number: int,
+    name: str,
+    target: Layer,
+    dynamic: bool | None,
+) -> None:
+    """The depth of what can, or can't, move, into an empty map; what can move on top of the rest.
+
+    ``dynamic`` None: of everything.
+    """
     viewer = f"shadow.{number}"
-    scene.look(viewer, plan.views[number]["clip_from_world"].T)
 
     def draw_opaque(enc: Encoder) -> None:
-        scene.draw_positions(enc, seen_by=viewer)
+        scene.draw_positions(enc, seen_by=viewer, dynamic=dynamic)
+
+    masked = scene.batches(MASKED, dynamic)
 
     def draw_masked(enc: Encoder) -> None:
-        masked = scene.batches(MASKED)
         scene.draw(enc, masked, texture_mask=BASE_COLOR_SLOT, cull=False, seen_by=viewer)
 
     reads = {"Instances": scene.instances, "ShadowViews": maps.reads()["ShadowViews"]}
     params = {"ShadowPass": pack(layouts().block("ShadowPass"), view=np.uint32(number))}
-    target = maps.target(number)
     g.raster(
-        DEPTH, name, depth=target, reads=reads, params=params, state=STATE, clear_depth=1.0,
-        draw=draw_opaque,
+        DEPTH, name, depth=target, reads=reads, params=params, state=STATE,
+        clear_depth=None if dynamic else 1.0, draw=draw_opaque,
     )  # fmt: skip
-    if scene.batches(MASKED):
+    if masked:
         reads["Materials"] = scene.materials
         g.raster(
             DEPTH_MASKED, f"{name}.masked", depth=target, reads=reads, params=params, state=STATE,
