@@ -6,29 +6,29 @@
 
 layout(local_size_x = 64) in;
 
+bool has_bit(uvec2 bits, uint bit) { return (((bit < 32u ? bits.x : bits.y) >> (bit & 31u)) & 1u) != 0u; }
+
 void keep(SlotsOfBlock s) {
     SlotPool pool = octree_state.slot_pools[s.pool];
     bool fresh = octree_state.fresh != 0u;
+    uint first_word = slot_word(s.pool, 0u);
+    uint first_free = first_free_word(s.pool) + pool.give_from;
     for (uvec2 left = fresh ? s.bits : s.bits | s.old; left != uvec2(0u);) {
         uint bit = take_lowest(left);
-        uvec2 mask = bits_below(bit + 1u) & ~bits_below(bit);
-        bool is = (s.bits & mask) != uvec2(0u);
-        uint rank = s.rank + bits_before(s.bits, bit);
+        bool is = has_bit(s.bits, bit);
+        bool was = has_bit(s.old, bit);
         if (fresh) {
-            uint place = rank - pool.first_rank;
-            if (place < pool.used) node_blocks[slot_word(s.pool, rank)] = pool.first_slot + place;
-            continue;
+            uint place = s.rank - pool.first_rank;
+            if (place < pool.used) node_blocks[first_word + s.rank] = pool.first_slot + place;
+        } else if (was) {
+            uint slot = old_blocks[first_word + s.old_rank];
+            uint vanished = (s.old_rank - pool.first_old) - (s.kept_rank - pool.first_kept);
+            if (is) node_blocks[first_word + s.rank] = slot;
+            else free_slots[first_free + vanished] = slot;
         }
-        if ((s.old & mask) == uvec2(0u)) continue;
-        uint old_rank = s.old_rank + bits_before(s.old, bit);
-        uint slot = old_blocks[slot_word(s.pool, old_rank)];
-        if (is) {
-            node_blocks[slot_word(s.pool, rank)] = slot;
-        } else {
-            uint kept_rank = s.kept_rank + bits_before(s.bits & s.old, bit);
-            uint vanished = (old_rank - pool.first_old) - (kept_rank - pool.first_kept);
-            free_slots[first_free_word(s.pool) + pool.give_from + vanished] = slot;
-        }
+        s.rank += uint(is);
+        s.old_rank += uint(was);
+        s.kept_rank += uint(is && was);
     }
 }
 
