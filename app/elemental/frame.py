@@ -104,6 +104,8 @@ class Renderer:
         self._sky = Sky(device)
         self._voxels: VoxelLighting | None = None
         self._specular = SpecularCounters()
+        self.spreads_gathers = False
+        """Whether further gathers of a moving scene are spread over frames, to keep up with it."""
 
     def resize(self, size: tuple[int, int]) -> None:
         """Draw the next frame at ``size``, or smaller where the driver can't."""
@@ -188,7 +190,9 @@ class Renderer:
         octree: Octree | None = None
         if voxels is not None:
             light_key = (shadows.lamp_key, sky.key)
-            octree = voxels.update(g, shadows, sky, self._area_block, light_key, s["gi.bounces"])
+            octree = voxels.update(
+                g, shadows, sky, self._area_block, light_key, s["gi.bounces"], self.spreads_gathers
+            )
         if view_name in VOXEL_VIEWS and octree is not None:
             level, side = s["voxels.level"], s["voxels.side"]
             return voxel_view(g, view, octree, self.size, view_name, level, side)

@@ -11,6 +11,11 @@
 #include "lib/voxel_gather.glsl"
 #include "lib/voxel_list.glsl"
 
+// 1: gathers what the octree held in the frame before.
+#ifndef SPREAD
+#define SPREAD 0
+#endif
+
 layout(local_size_x = 64) in;
 
 layout(std430) readonly buffer State { OctreeState octree_state; };
@@ -60,6 +65,10 @@ void main() {
     float certainty = normal_certainty(squared);
     vec4 albedo = unpackUnorm4x8(voxel.albedo);
     vec3 incident = direct_irradiance(p_ws, normal, certainty, spacing) * INVERSE_PI;
+#if SPREAD
+    // Bricks that got other slots hold nothing yet to gather.
+    if (octree_state.fresh == 0u)
+#endif
     incident += gathered_radiance(p_ws, normal, spacing);
     vec3 outgoing = min(albedo.rgb * incident + rgb9e5_unpack(voxel.emissive), HALF_MAX);
     radiance[index] = uvec2(packHalf2x16(outgoing.rg * albedo.a), packHalf2x16(vec2(outgoing.b, 1.0) * albedo.a));

@@ -1,5 +1,6 @@
 // Makes the leaf voxels dirty whose light a change of casters may have reached: those that see a light
 // through one of the changed boxes. A block of 4x4x4 points at a time, which errs on the safe side.
+// Some blocks are lit anew whatever changed: gathered light comes round everywhere within a few frames.
 
 #include "lib/dispatch.glsl"
 #include "lib/shadow.glsl"
@@ -63,10 +64,11 @@ void main() {
     uvec2 bits = uvec2(point_words[word], point_words[word + 1u]);
     if (bits == uvec2(0u)) return;
     vec3 center = u_octree.origin_size.xyz + (vec3(grid_cell(lattice, block * 64u)) + 1.5) * u_octree.voxel_m;
-    for (int i = 0; i < lights.length(); ++i) {
-        if (!light_changed(lights[i], center, 1.5 * u_octree.voxel_m)) continue;
-        dirty_words[word] |= bits.x;
-        dirty_words[word + 1u] |= bits.y;
-        return;
+    bool changed = block >= u_changed.first_block && block < u_changed.end_block;
+    for (int i = 0; i < lights.length() && !changed; ++i) {
+        changed = light_changed(lights[i], center, 1.5 * u_octree.voxel_m);
     }
+    if (!changed) return;
+    dirty_words[word] |= bits.x;
+    dirty_words[word + 1u] |= bits.y;
 }

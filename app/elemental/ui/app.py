@@ -61,6 +61,7 @@ class App:
         self.device = Device.from_window(window.get_proc_address)
         self.gui = Gui(window)
         self.renderer = Renderer(self.device, stage.scene, stage.settings, words.size)
+        self.renderer.spreads_gathers = True
         self.fly = FlyCamera.at(stage.camera, _diagonal(stage))
         self.rides = stage.camera_moves
         """Whether the scene moves the camera, until the user does."""

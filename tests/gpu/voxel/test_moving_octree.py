@@ -11,7 +11,7 @@ import pytest
 
 from elemental.core.layout import layouts
 from elemental.gpu.device import Device
-from elemental.passes.voxel.lighting import VoxelLighting
+from elemental.passes.voxel.lighting import SLICES, VoxelLighting
 from gpu.rig import vector
 from gpu.voxel.scenes import colored, grid_with
 from gpu.voxel.stage import Lit
@@ -154,6 +154,35 @@ def test_further_bounces_are_complete_in_every_frame(
     assert light.max() > 0.1
     np.testing.assert_allclose(light, same, rtol=0.01, atol=2e-3)
     for item in (voxels, other):
+        item.release()
+
+
+def test_spread_gathers_settle_at_the_light_of_many_bounces(device: Device, lit: Lit) -> None:
+    """Each frame gathers once, for an eighth of what did not change; then nothing is left to do."""
+    lit.scene.lights = lit.scene.lights[:1]
+    walk = Walk(lit.scene, np.random.default_rng(7))
+    voxels = lit.lighting(32)
+    show(device, lit, voxels, walk.step(), 4, True)
+    for _ in range(3):
+        names = show(device, lit, voxels, walk.step(), 4, True)
+        assert names.count("light voxels") == 1
+    pose, frames, every = walk.pose(), 0, listed(voxels)[0]
+    while voxel_passes(names):
+        names = show(device, lit, voxels, pose, 4, True)
+        assert rasterized(names) == set()
+        frames += 1
+        if frames == 1:
+            every = len(np.flatnonzero(held(voxels.octree).radiance.any(axis=2)))
+            assert 0 < listed(voxels)[0] < 0.5 * every
+    assert frames == 4 * SLICES + 1
+    other = fresh(lit, voxels, 6)
+    got, wanted = held(voxels.octree), held(other.octree)
+    np.testing.assert_array_equal(got.attributes, wanted.attributes)
+    light, same = (h.radiance.view(np.float16).astype(float) for h in (got, wanted))
+    np.testing.assert_allclose(light, same, rtol=0.03, atol=4e-3)
+    once = fresh(lit, voxels, 1)
+    assert np.abs(held(once.octree).radiance.view(np.float16).astype(float) - same).max() > 0.05
+    for item in (voxels, other, once):
         item.release()
 
 

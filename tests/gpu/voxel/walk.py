@@ -106,23 +106,28 @@ def still(scene: Scene, pose: Pose) -> Scene:
     return replace(scene, instances=kept, extent=scene.extent)
 
 
-def update(lit: Lit, voxels: VoxelLighting, bounces: int = 1) -> list[str]:
+def update(lit: Lit, voxels: VoxelLighting, bounces: int = 1, spread: bool = False) -> list[str]:
     """A frame of the octree alone. Returns the names of its passes."""
     g = lit.device.begin_frame()
     lit.gpu.deform(g)
     lit.illuminate(g)
-    voxels.update(g, lit.shadows, lit.sky, pack_area_lights([]), lit.light_key, bounces)
+    voxels.update(g, lit.shadows, lit.sky, pack_area_lights([]), lit.light_key, bounces, spread)
     names = [node.name for node in g.passes]
     g.execute()
     return names
 
 
 def show(
-    device: Device, lit: Lit, voxels: VoxelLighting, pose: Pose, bounces: int = 1
+    device: Device,
+    lit: Lit,
+    voxels: VoxelLighting,
+    pose: Pose,
+    bounces: int = 1,
+    spread: bool = False,
 ) -> list[str]:
     """The frame of a pose; the names of its passes."""
     lit.gpu.update(pose)
-    names = update(lit, voxels, bounces)
+    names = update(lit, voxels, bounces, spread)
     device.finish()
     return names
 

@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 
 LIGHT = Compute("voxel/light.comp.glsl")
 LIGHT_AND_GATHER = Compute("voxel/light.comp.glsl", defines={"GATHER": 1, "CONE_SPLIT": 1})
+LIGHT_AND_GATHER_LAST = Compute(
+    "voxel/light.comp.glsl", defines={"GATHER": 1, "CONE_SPLIT": 1, "SPREAD": 1}
+)
 SIDED_BYTES_A_BRICK = 8 * 6 * 8
 
 
@@ -32,12 +35,18 @@ def reader(path: str, kind: str, one_leaf_level: bool, listed: bool = False) -> 
 
 
 def light_voxels(
-    g: Graph, octree: Octree, shadows: ShadowMaps, sky: Sky, area_lights: Block, gather: bool
+    g: Graph,
+    octree: Octree,
+    shadows: ShadowMaps,
+    sky: Sky,
+    area_lights: Block,
+    gather: bool,
+    of_last_frame: bool = False,
 ) -> None:
-    """Radiance of every leaf voxel: emission and direct light through the shadow maps.
+    """Radiance of the listed leaf voxels: emission and direct light through the shadow maps.
 
     ``gather``: also what arrives by cones through the octree's present radiance and from
-    ``area_lights``, one more bounce.
+    ``area_lights``, one more bounce; ``of_last_frame``: that radiance is of the frame before.
     """
     reads = {
         "State": octree.state,
@@ -50,8 +59,9 @@ def light_voxels(
     if gather:
         reads |= {**octree.tracing_reads(), **sky.reads()}
         params |= {"AreaLights": area_lights, **sky.params()}
+    gathering = LIGHT_AND_GATHER_LAST if of_last_frame else LIGHT_AND_GATHER
     g.compute(
-        LIGHT_AND_GATHER if gather else LIGHT,
+        gathering if gather else LIGHT,
         "light voxels",
         reads=reads,
         writes={"Radiance": octree.radiance},

@@ -14,13 +14,23 @@ from elemental.passes.voxel.build import build
 from elemental.passes.voxel.grid import Grid
 from elemental.passes.voxel.light import compress, filter_levels, light_voxels
 from elemental.passes.voxel.octree import Capacity, Counts, Octree
-from elemental.passes.voxel.steps import Kept, boxes_max, keep_still, list_everything, step
+from elemental.passes.voxel.steps import (
+    NO_BLOCKS,
+    Kept,
+    boxes_max,
+    keep_still,
+    list_everything,
+    refresh,
+    step,
+)
 from elemental.passes.voxel.voxelize import voxelize
 
 if TYPE_CHECKING:
     from elemental.passes.shadow import ShadowMaps
     from elemental.passes.sky import Sky
 
+SLICES = 8
+"""Parts of the leaf voxels of which each spread gather does one: octants of the scene."""
 NOTHING = Counts(0, 0, 0, 0, 0, 0, 0, 0, 0, 0)
 
 
@@ -51,6 +61,8 @@ class VoxelLighting:
         self.counts = NOTHING
         self._built_version: int | None = None
         self._lit_by: Hashable = None
+        self._slice = 0
+        self._unsettled = 0
 
     def _allocate(self, grid: Grid, capacity: Capacity, max_emission: float) -> None:
         self.octree = Octree(self.device, grid, capacity, max_emission, keeps_slots=self._moves)
@@ -70,46 +82,76 @@ class VoxelLighting:
         area_lights: Block,
         light_key: Hashable,
         bounces: int,
+        spread: bool = False,
     ) -> Octree:
         """Add the passes that this frame needs: none where nothing changed.
 
         ``light_key`` is equal as long as lights and sky are, whatever moves; ``bounces`` counts
-        gathers: voxel radiance holds light gathered ``bounces - 1`` times.
+        gathers: voxel radiance holds light gathered ``bounces - 1`` times. ``spread``: where things
+        move, one gather a frame of what the octree held in the last, of what changed and of a slice
+        of the rest, until light has gone round ``bounces`` times since.
         """
         gathers = bounces > 1
         # Area lights reach voxels by gathering alone.
         key = (light_key, bounces, area_lights.tobytes() if gathers else b"")
         lit_anew = key != self._lit_by
         built = self._built_version != self.scene.version
+        whole = self._lit_by is None
+        # Beside regions of other levels no slice can be done by itself.
+        spread &= gathers and self._kept is not None and self.octree.grid.one_leaf_level
         if built:
-            self._grow()
+            whole |= self._grow()
             if self._kept is None:
                 build(g, self.octree, voxelize(g, self.scene, self.octree))
             else:
-                self._step(g, self._kept, shadows, everything=lit_anew or gathers)
+                everything = lit_anew or (gathers and not spread)
+                blocks = self._next_slice() if spread else NO_BLOCKS
+                whole |= self._step(g, self._kept, shadows, everything, blocks)
             g.read_later(self.octree.state, self._counted)
             self._built_version = self.scene.version
         elif lit_anew and self._kept is not None:
             list_everything(g, self.octree, self._kept)
+        elif self._unsettled and spread and self._kept is not None:
+            refresh(g, self.octree, self._kept, shadows, self._next_slice())
         if built or lit_anew:
-            sided = self._kept.sided if self._kept is not None else None
-            for bounce in range(max(bounces, 1)):
-                light_voxels(g, self.octree, shadows, sky, area_lights, gather=bounce > 0)
-                compress(g, self.octree, filter_levels(g, self.octree, sided))
-            self._lit_by = key
+            self._unsettled = SLICES * bounces if spread and not whole else 0
+        elif self._unsettled and spread:
+            self._unsettled -= 1
+        else:
+            return self.octree
+        sided = self._kept.sided if self._kept is not None else None
+        spread &= not whole
+        for bounce in (1,) if spread else range(max(bounces, 1)):
+            light_voxels(
+                g, self.octree, shadows, sky, area_lights, gather=bounce > 0, of_last_frame=spread
+            )
+            compress(g, self.octree, filter_levels(g, self.octree, sided))
+        self._lit_by = key
         return self.octree
 
-    def _step(self, g: Graph, kept: Kept, shadows: ShadowMaps, everything: bool) -> None:
-        """What moved since the last build; all of the scene where that is not known or more."""
+    def _next_slice(self) -> range:
+        """Blocks of leaf points, another eighth each time."""
+        grid = self.octree.grid
+        blocks = grid.grid_blocks(grid.leaf_level + 1)
+        self._slice = (self._slice + 1) % SLICES
+        return range(self._slice * blocks // SLICES, (self._slice + 1) * blocks // SLICES)
+
+    def _step(
+        self, g: Graph, kept: Kept, shadows: ShadowMaps, everything: bool, blocks: range
+    ) -> bool:
+        """What moved since the last build. Returns whether that was not known, or more changed, so
+        that the scene was voxelized whole."""
         changes = self.scene.changes
         follows = self._built_version is not None and self.scene.version == self._built_version + 1
-        if not (follows and all(self.scene.dynamic[change.instance] for change in changes)):
+        whole = not (follows and all(self.scene.dynamic[change.instance] for change in changes))
+        if whole:
             keep_still(g, self.scene, self.octree, kept)
-            everything = True
         boxes = [box for c in changes if c.casts for box in (c.before, c.after) if box]
         # Beside regions of other levels voxels depend on more than their own surroundings.
-        everything |= not self.octree.grid.one_leaf_level or len(boxes) > boxes_max()
-        step(g, self.scene, self.octree, kept, shadows, boxes, everything)
+        several = not self.octree.grid.one_leaf_level
+        everything |= whole or several or len(boxes) > boxes_max()
+        step(g, self.scene, self.octree, kept, shadows, boxes, everything, blocks)
+        return whole
 
     def _counted(self, raw: bytes) -> None:
         self.counts = Counts.from_state(raw)
@@ -123,14 +165,15 @@ class VoxelLighting:
         wanted = sizing.with_slack(counts) if self._moves else counts
         return sizing.capacity_for(wanted, self.budget_bytes)
 
-    def _grow(self) -> None:
+    def _grow(self) -> bool:
         """Larger pools where the last build had to drop something and the budget allows."""
         if not self.counts.overflowed or self._wanted() == self.octree.capacity:
-            return
+            return False
         octree = self.octree
         self.release()
         self._allocate(octree.grid, self._wanted(), octree.max_emission)
         self._built_version = self._lit_by = None
+        return True
 
     def counters(self) -> dict[str, int]:
         """What the newest counted build holds and what it had to drop."""

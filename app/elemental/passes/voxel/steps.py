@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from elemental.core.layout import Block, layouts, pack
+from elemental.core.layout import layouts, pack
 from elemental.gpu.device import Device
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import Ref
@@ -43,6 +43,8 @@ UNLINK = Compute("voxel/unlink.comp.glsl")
 LINK_STILL = Compute("voxel/link.comp.glsl", defines={"KEPT_FRAGMENTS": 1})
 LINK_MOVING = Compute("voxel/link.comp.glsl", defines={"KEPT_FRAGMENTS": 2})
 RESOLVE = Compute("voxel/resolve.comp.glsl", defines={"KEPT_FRAGMENTS": 1})
+
+NO_BLOCKS = range(0)
 
 
 class Kept:
@@ -100,28 +102,40 @@ def step(
     shadows: ShadowMaps,
     casters: Sequence[Box],
     everything: bool,
+    blocks: range = NO_BLOCKS,
 ) -> None:
     """Bring nodes, bricks and leaf attributes up to what moved, and list what is dirty.
 
     ``casters``: boxes in which something changed its shadow. ``everything``: list all that there
-    is, whatever is dirty.
+    is, whatever is dirty; ``blocks``: or, beside what is dirty, the leaf voxels of these blocks.
     """
     state = {"State": octree.state}
     g.compute(BEGIN, writes=state, params=octree.params, groups=1)
     append_fragments(g, scene, octree, kept.fragments, dynamic=True)
     g.compute(QUEUE, "voxelize.queue", writes=state, params=octree.params, groups=1)
-    _find_dirty(g, octree, kept, shadows, [] if everything else casters)
+    _rebuild_bits(g, octree, kept)
+    if not everything:
+        _relight(g, octree, kept, shadows, casters, blocks)
+    _spread_dirty(g, octree, kept)
     _give_slots(g, octree, kept)
     list_dirty(g, octree, kept, everything)
     _resolve(g, octree, kept)
 
 
-def _find_dirty(
-    g: Graph, octree: Octree, kept: Kept, shadows: ShadowMaps, casters: Sequence[Box]
-) -> None:
-    """The bits of points and nodes that there are now, and of those that are dirty."""
-    grid, state = octree.grid, {"State": octree.state}
-    points = {"Points": kept.points}
+def refresh(g: Graph, octree: Octree, kept: Kept, shadows: ShadowMaps, blocks: range) -> None:
+    """List the leaf voxels of some blocks, and what depends on them."""
+    g.compute(BEGIN, writes={"State": octree.state}, params=octree.params, groups=1)
+    g.clear_buffer(kept.dirty)
+    _relight(g, octree, kept, shadows, (), blocks)
+    _spread_dirty(g, octree, kept)
+    list_dirty(g, octree, kept, everything=False)
+
+
+def _rebuild_bits(g: Graph, octree: Octree, kept: Kept) -> None:
+    """The leaf points that there are now, and as dirty those that moving fragments left or reached.
+
+    The bits of coarser points and of nodes begin as those of what stands.
+    """
     g.clear_buffer(kept.dirty)
     g.copy_buffer(kept.moving_points, kept.dirty)
     g.clear_buffer(kept.moving_points)
@@ -130,39 +144,65 @@ def _find_dirty(
     g.copy_buffer(kept.still_nodes, octree.node_blocks)
     g.compute(
         MARK_MOVING,
-        reads={**state, "Fragments": kept.fragments, "Regions": octree.regions},
-        writes={**points, "MovingPoints": kept.moving_points, "Dirty": kept.dirty},
+        reads={"State": octree.state, "Fragments": kept.fragments, "Regions": octree.regions},
+        writes={
+            "Points": kept.points,
+            "MovingPoints": kept.moving_points,
+            "Dirty": kept.dirty,
+        },
         params=octree.params,
         indirect=(octree.state, state_offset("moving_fragments")),
     )
-    if casters:
-        lights: dict[str, Ref] = shadows.reads()
-        g.compute(
-            RELIGHT,
-            reads={**points, **lights},
-            writes={"Dirty": kept.dirty},
-            params={**octree.params, **shadows.params(), "ChangedBoxes": _pack_boxes(casters)},
-            threads=grid.grid_blocks(grid.leaf_level + 1),
-        )
+
+
+def _relight(
+    g: Graph,
+    octree: Octree,
+    kept: Kept,
+    shadows: ShadowMaps,
+    casters: Sequence[Box],
+    blocks: range,
+) -> None:
+    """Leaf points are dirty, too, that see a light through one of the boxes, or in ``blocks``."""
+    if not (casters or blocks):
+        return
+    lights: dict[str, Ref] = shadows.reads()
+    corners = np.zeros((2, boxes_max(), 4), np.float32)
+    for number, (low, high) in enumerate(casters):
+        corners[0, number, :3], corners[1, number, :3] = low, high
+    changed = pack(
+        layouts().block("ChangedBoxes"),
+        low_ws=corners[0],
+        high_ws=corners[1],
+        count=len(casters),
+        first_block=blocks.start,
+        end_block=blocks.stop,
+    )
+    g.compute(
+        RELIGHT,
+        reads={"Points": kept.points, **lights},
+        writes={"Dirty": kept.dirty},
+        params={**octree.params, **shadows.params(), "ChangedBoxes": changed},
+        threads=octree.grid.grid_blocks(octree.grid.leaf_level + 1),
+    )
+
+
+def _spread_dirty(g: Graph, octree: Octree, kept: Kept) -> None:
+    """From dirty leaf points to coarser ones and to nodes, and likewise what is occupied."""
+    grid = octree.grid
     for level in range(grid.leaf_level, -1, -1):
         g.compute(
             REDUCE_DIRTY,
             f"reduce.dirty.{level}",
             reads={"Regions": octree.regions},
-            writes={**points, "NodeBlocks": octree.node_blocks, "Dirty": kept.dirty},
+            writes={
+                "Points": kept.points,
+                "NodeBlocks": octree.node_blocks,
+                "Dirty": kept.dirty,
+            },
             params={**octree.params, "OctreeLevel": level_params(level)},
             threads=grid.grid_blocks(level + 1),
         )
-
-
-def _pack_boxes(boxes: Sequence[Box]) -> Block:
-    """The ChangedBoxes block."""
-    corners = np.zeros((2, boxes_max(), 4), np.float32)
-    for number, (low, high) in enumerate(boxes):
-        corners[0, number, :3], corners[1, number, :3] = low, high
-    return pack(
-        layouts().block("ChangedBoxes"), low_ws=corners[0], high_ws=corners[1], count=len(boxes)
-    )
 
 
 def boxes_max() -> int:
