@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -41,7 +41,7 @@ from elemental.passes.voxel.view import VOXEL_VIEWS, voxel_view
 from elemental.scene.area_lights import AreaLight, area_lights, followed
 from elemental.scene.deform import posed
 from elemental.scene.evaluate import Pose, evaluate
-from elemental.scene.model import Camera, Light, Material, Scene
+from elemental.scene.model import Camera, Light, Material, Region, Scene
 from elemental.settings import Settings
 
 MIB = 1 << 20
@@ -129,6 +129,17 @@ class Renderer:
         if self._voxels is not None and brightest > self._voxels.octree.max_emission:
             self._voxels.release()  # made anew for that range
             self._voxels = None
+
+    def set_regions(self, regions: Sequence[Region]) -> None:
+        """Replace the scene's regions, and with them leaf levels, from the next frame on."""
+        self.scene.regions = list(regions)
+        if self._voxels is not None and not self._voxels.set_grid(self._grid()):
+            self._voxels.release()  # made anew
+            self._voxels = None
+
+    def _grid(self) -> Grid:
+        resolution = self.settings["gi.resolution"]
+        return Grid.fit(self._meshes.bounds, resolution, self.scene.regions)
 
     def _choose_area_lights(self) -> list[AreaLight]:
         return area_lights(self.scene) if self.settings["gi.area_lights"] else []
@@ -270,7 +281,7 @@ class Renderer:
             self._voxels = VoxelLighting(
                 self.device,
                 self._meshes,
-                Grid.fit(self._meshes.bounds, s["gi.resolution"], self.scene.regions),
+                self._grid(),
                 area_m2=sizing.projected_area(present),
                 max_emission=sizing.max_emission(self.scene, self._area_lights),
                 budget_bytes=s["gi.memory_budget_mb"] * MIB,

@@ -205,6 +205,34 @@ def test_regions_of_several_levels_follow_too(device: Device, lit: Lit) -> None:
     voxels.release()
 
 
+def test_regions_change_without_rasterizing(device: Device, lit: Lit) -> None:
+    """What stands keeps its fragments; its leaves move to other levels, and back."""
+    assert lit.scene.extent is not None
+    rng = np.random.default_rng(12)
+    walk = Walk(lit.scene, rng, 0.5)
+    plain = grid_with(np.zeros((8, 8, 8), int), lit.scene.extent, 64)
+    voxels = VoxelLighting(device, lit.gpu, plain, 1.0, 3.0, 1 << 30)
+    show(device, lit, voxels, walk.step())
+    one_level = voxels.counts
+    for levels in (rng.integers(-1, 1, (8, 8, 8)), np.zeros((8, 8, 8), int)):
+        levels[0, 0, 0] = 0
+        assert voxels.set_grid(grid_with(levels, lit.scene.extent, 64))
+        pose = walk.pose()
+        assert "still" not in rasterized(show(device, lit, voxels, pose))
+        assert not voxels.counts.overflowed
+        for _ in range(2):
+            other = fresh(lit, voxels)
+            assert voxels.counts == other.counts
+            assert_same(held(voxels.octree), held(other.octree))
+            other.release()
+            if levels.any():
+                assert voxels.counts.bricks < one_level.bricks
+                show(device, lit, voxels, walk.step())
+    finer = grid_with(np.ones((8, 8, 8), int), lit.scene.extent, 64)
+    assert not voxels.set_grid(finer)  # on another lattice
+    voxels.release()
+
+
 def test_materials_of_what_moves_and_of_what_stands(device: Device, lit: Lit) -> None:
     walk = Walk(lit.scene, np.random.default_rng(9))
     voxels = lit.lighting(32)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from elemental.core.layout import Block
@@ -12,13 +13,12 @@ from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.voxel import sizing
 from elemental.passes.voxel.build import build
 from elemental.passes.voxel.grid import Grid
+from elemental.passes.voxel.kept import Kept, carry_still, keep_still, mark_still
 from elemental.passes.voxel.light import compress, filter_levels, light_voxels
 from elemental.passes.voxel.octree import Capacity, Counts, Octree
 from elemental.passes.voxel.steps import (
     NO_BLOCKS,
-    Kept,
     boxes_max,
-    keep_still,
     list_everything,
     refresh,
     step,
@@ -61,6 +61,7 @@ class VoxelLighting:
         self.counts = NOTHING
         self._built_version: int | None = None
         self._lit_by: Hashable = None
+        self._regridded = False
         self._slice = 0
         self._unsettled = 0
 
@@ -73,6 +74,30 @@ class VoxelLighting:
         self._lit_by = None
         if what == "geometry":
             self._built_version = None
+
+    def set_grid(self, grid: Grid) -> bool:
+        """Take other regions' leaf levels from the next frame on. Returns whether it can.
+
+        It can where fragments are kept and stay on the same finest lattice: they are marked anew
+        in pools of the size that they ask for, which is counted, with a wait; nothing is drawn.
+        """
+        old, kept = self.octree, self._kept
+        on_lattice = (grid.leaf_level, grid.size, *grid.origin) == (
+            old.grid.leaf_level, old.grid.size, *old.grid.origin
+        )  # fmt: skip
+        if kept is None or self._built_version is None or not on_lattice:
+            return False
+        counts = sizing.count_again(old, grid, kept.fragments)
+        room = replace(self._room_for(counts), fragments=old.capacity.fragments)
+        self._allocate(grid, room, old.max_emission)
+        assert self._kept is not None
+        g = self.device.begin_frame()
+        carry_still(g, old, kept, self.octree, self._kept)
+        g.execute()
+        old.release()
+        kept.release()
+        self._lit_by, self._regridded = None, True
+        return True
 
     def update(
         self,
@@ -95,7 +120,7 @@ class VoxelLighting:
         # Area lights reach voxels by gathering alone.
         key = (light_key, bounces, area_lights.tobytes() if gathers else b"")
         lit_anew = key != self._lit_by
-        built = self._built_version != self.scene.version
+        built = self._built_version != self.scene.version or self._regridded
         whole = self._lit_by is None
         # Beside regions of other levels no slice can be done by itself.
         spread &= gathers and self._kept is not None and self.octree.grid.one_leaf_level
@@ -140,12 +165,17 @@ class VoxelLighting:
         self, g: Graph, kept: Kept, shadows: ShadowMaps, everything: bool, blocks: range
     ) -> bool:
         """What moved since the last build. Returns whether that was not known, or more changed, so
-        that the scene was voxelized whole."""
+        that the octree was built whole."""
         changes = self.scene.changes
-        follows = self._built_version is not None and self.scene.version == self._built_version + 1
-        whole = not (follows and all(self.scene.dynamic[change.instance] for change in changes))
+        since = self.scene.version - (self._built_version or 0)
+        stands = since == 0 or all(self.scene.dynamic[change.instance] for change in changes)
+        whole = not (self._built_version is not None and since <= 1 and stands)
         if whole:
             keep_still(g, self.scene, self.octree, kept)
+        elif self._regridded:
+            mark_still(g, self.octree, kept)
+            whole = True
+        self._regridded = False
         boxes = [box for c in changes if c.casts for box in (c.before, c.after) if box]
         # Beside regions of other levels voxels depend on more than their own surroundings.
         several = not self.octree.grid.one_leaf_level

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from elemental.gpu.device import Device
+from elemental.gpu.resources import Buffer
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.voxel.build import find_nodes
 from elemental.passes.voxel.grid import Grid
@@ -82,6 +83,23 @@ def count(device: Device, scene: GpuScene, grid: Grid, area_m2: float) -> Counts
         if counts.fragments_dropped == 0 or fragments == FRAGMENTS_MAX:
             return replace(counts, fragments=asked, fragments_dropped=0)
         fragments = min(asked, FRAGMENTS_MAX)
+
+
+def count_again(octree: Survey, grid: Grid, fragments: Buffer) -> Counts:
+    """What another grid on the same lattice asks for, by the fragments of an octree's last build.
+
+    Renders a graph of its own and waits for it.
+    """
+    device = octree.device
+    unbounded = Capacity(octree.capacity.fragments, UNBOUNDED, UNBOUNDED, UNBOUNDED, UNBOUNDED // 2)
+    survey = Survey(device, grid, unbounded, 0.0)
+    g = device.begin_frame()
+    g.copy_buffer(octree.state, survey.state)
+    find_nodes(g, survey, fragments)
+    g.execute()
+    counts = Counts.from_state(survey.state.read().tobytes())
+    survey.release()
+    return counts
 
 
 def with_slack(counts: Counts) -> Counts:

@@ -13,22 +13,18 @@ from collections.abc import Sequence
 import numpy as np
 
 from elemental.core.layout import layouts, pack
-from elemental.gpu.device import Device
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import Ref
-from elemental.gpu.resources import Buffer
 from elemental.gpu.shaders import Compute
 from elemental.passes.instance_table import Box
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.shadow import ShadowMaps
-from elemental.passes.voxel.build import BLOCK_BYTES, level_params, mark, state_offset
-from elemental.passes.voxel.light import SIDED_BYTES_A_BRICK
-from elemental.passes.voxel.octree import CATEGORY, NODE_BLOCK_BYTES, Octree
+from elemental.passes.voxel.build import level_params, state_offset
+from elemental.passes.voxel.kept import BEGIN, Kept
+from elemental.passes.voxel.octree import Octree
 from elemental.passes.voxel.voxelize import append_fragments
 
-BEGIN = Compute("voxel/begin_step.comp.glsl")
 QUEUE = Compute("voxel/queue.comp.glsl")
-QUEUE_STILL = Compute("voxel/queue.comp.glsl", defines={"STILL": 1})
 MARK_MOVING = Compute("voxel/mark.comp.glsl", defines={"MOVING": 1})
 RELIGHT = Compute("voxel/relight.comp.glsl")
 REDUCE_DIRTY = Compute("voxel/reduce.comp.glsl", defines={"DIRTY": 1})
@@ -45,53 +41,6 @@ LINK_MOVING = Compute("voxel/link.comp.glsl", defines={"KEPT_FRAGMENTS": 2})
 RESOLVE = Compute("voxel/resolve.comp.glsl", defines={"KEPT_FRAGMENTS": 1})
 
 NO_BLOCKS = range(0)
-
-
-class Kept:
-    """What an octree of a scene with moving parts keeps from step to step, beside its pools.
-
-    Points are a bit each, of all levels: `still` of what never moves, `points` of everything,
-    `moving` of what moved into the last step.
-    """
-
-    def __init__(self, device: Device, octree: Octree) -> None:
-        grid, capacity = octree.grid, octree.capacity
-        self._buffers: list[Buffer] = []
-
-        def keep(name: str, nbytes: int) -> Buffer:
-            made = device.buffer(f"octree.{name}", max(nbytes, 16), category=CATEGORY)
-            self._buffers.append(made)
-            return made
-
-        points = grid.point_block_count * BLOCK_BYTES
-        self.fragments = keep(
-            "fragments", capacity.fragments * layouts().struct("VoxelFragment").itemsize
-        )
-        self.links = keep("links", capacity.fragments * 4)
-        self.heads = keep("heads", capacity.leaves * 8 * 8)
-        self.still_points = keep("still_points", points)
-        self.still_nodes = keep("still_nodes", grid.block_count * NODE_BLOCK_BYTES)
-        self.points = keep("points", points)
-        self.moving_points = keep("moving_points", points)
-        self.dirty = keep("dirty", points + grid.block_count * BLOCK_BYTES)
-        self.old_blocks = keep("old_blocks", octree.node_blocks.nbytes)
-        self.kept_sums = keep("kept_sums", grid.node_block_count * 8)
-        self.free_slots = keep("free_slots", sum(capacity.slots(grid.one_leaf_level)) * 4)
-        self.sided = keep("sided", capacity.interior * SIDED_BYTES_A_BRICK)
-
-    def release(self) -> None:
-        """Free all of it."""
-        for buffer in self._buffers:
-            buffer.release()
-
-
-def keep_still(g: Graph, scene: GpuScene, octree: Octree, kept: Kept) -> None:
-    """Rasterize what never moves, for all steps to come, and forget the steps so far."""
-    g.copy_buffer(octree.empty_state, octree.state)
-    append_fragments(g, scene, octree, kept.fragments, dynamic=False)
-    g.compute(QUEUE_STILL, writes={"State": octree.state}, params=octree.params, groups=1)
-    mark(g, octree, kept.fragments, kept.still_points, kept.still_nodes)
-    g.clear_buffer(kept.moving_points)
 
 
 def step(
