@@ -193,7 +193,7 @@ class VoxelLighting:
 
     def _room_for(self, counts: Counts) -> Capacity:
         wanted = sizing.with_slack(counts) if self._moves else counts
-        return sizing.capacity_for(wanted, self.budget_bytes)
+        return sizing.capacity_for(wanted, self.budget_bytes, keeps_slots=self._moves)
 
     def _grow(self) -> bool:
         """Larger pools where the last build had to drop something and the budget allows."""

@@ -48,13 +48,21 @@ class Capacity:
         finest = max(min(self.bricks - coarse - mixed, self.leaves - mixed), 0)
         return coarse, mixed, finest, self.tiles
 
-    def nbytes(self) -> int:
-        """Bytes at most of the pools that grow with it, without the transient fragment queue."""
+    def nbytes(self, keeps_slots: bool = False) -> int:
+        """Bytes at most of the pools that grow with it, without the transient fragment queue.
+
+        ``keeps_slots``: with the queue and all else that is kept where things move.
+        """
         sided = self.interior * 4 * (math.prod(SIDED_TEXELS) + 8)
         finest = (self.bricks - self.interior) * 2 * 4 * math.prod(LEAF_TEXELS)
         leaves = self.leaves * 8 * (_struct_bytes("VoxelAttributes") + 8 + 4)
         nodes = self.tiles * 8 * _struct_bytes("Node") + self.bricks * _struct_bytes("Brick")
-        return sided + finest + leaves + nodes
+        kept = 0
+        if keeps_slots:
+            queue = self.fragments * (_struct_bytes("VoxelFragment") + 4)
+            tables = 4 * 4 * (self.bricks + self.tiles)  # now, before, free, listed
+            kept = queue + self.leaves * 8 * 8 + self.interior * 8 * 6 * 8 + tables
+        return sided + finest + leaves + nodes + kept
 
 
 @dataclass(frozen=True)

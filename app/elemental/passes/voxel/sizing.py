@@ -118,7 +118,7 @@ def with_slack(counts: Counts) -> Counts:
     )
 
 
-def capacity_for(counts: Counts, budget_bytes: int) -> Capacity:
+def capacity_for(counts: Counts, budget_bytes: int, keeps_slots: bool = False) -> Capacity:
     """Pools for these counts; fewer leaves where the budget or the atlas can't hold them all."""
     wanted = Capacity(
         fragments=min(max(counts.fragments + counts.fragments_dropped, 1), FRAGMENTS_MAX),
@@ -127,10 +127,9 @@ def capacity_for(counts: Counts, budget_bytes: int) -> Capacity:
         leaves=max(counts.leaves_asked, 1),
         interior=max(counts.interior_asked, 1),
     )
-    excess = max(0, wanted.nbytes() - budget_bytes)
-    a_leaf = (
-        replace(wanted, bricks=1, leaves=1).nbytes() - replace(wanted, bricks=0, leaves=0).nbytes()
-    )
+    excess = max(0, wanted.nbytes(keeps_slots) - budget_bytes)
+    one, none = (replace(wanted, bricks=n, leaves=n).nbytes(keeps_slots) for n in (1, 0))
+    a_leaf = one - none
     cut = min(max(-(-excess // a_leaf), wanted.bricks - BRICKS_MAX), wanted.leaves - 1)
     cut = max(cut, 0)
     return replace(wanted, bricks=wanted.bricks - cut, leaves=wanted.leaves - cut)
