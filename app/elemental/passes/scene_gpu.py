@@ -32,6 +32,8 @@ from elemental.scene.model import AlphaMode, Material, Scene
 
 SURFACE_NAMES = scene_pack.SURFACE_VERTEX.names or ()
 INSTANCE_FORMAT = "16f 16f 4u 64x/i"
+RESTLESS_REPAINTS = 2
+"""Changes of material after which an instance counts as dynamic."""
 INSTANCE_NAMES = ("a_world_from_local", "a_normal_from_local", "a_instance_words")
 """Members of struct Instance as attributes; the last holds its four words."""
 
@@ -45,8 +47,8 @@ class GpuScene:
 
     Once a frame `update` takes over a pose, and `deform` bends what it bends. `changes` is then
     what became of the instances since the frame before, and `version` counts the frames with any.
-    Instances are `dynamic` (N,) bool where a pose may ever change them. Nothing of this is read
-    back from the GPU.
+    Instances are `dynamic` (N,) bool where a pose may ever change them, and from their third
+    material on. Nothing of this is read back from the GPU.
     """
 
     def __init__(self, device: Device, scene: Scene, area_lights: Sequence[AreaLight] = ()) -> None:
@@ -58,6 +60,7 @@ class GpuScene:
         self._device, self._scene = device, scene
         self._table = InstanceTable(scene, area_lights)
         self._material_changes: dict[int, Change] = {}
+        self._repaints = np.zeros(len(scene.instances), np.int64)
         self._geometry = geometry = scene_pack.pack_geometry(scene, scene_pack.bending(scene))
         self.instances = self._upload("instances", self._table.rows, dynamic=True)
         self.materials = self._upload("materials", scene_pack.pack_materials(scene), dynamic=True)
@@ -82,7 +85,9 @@ class GpuScene:
 
     def _arrange(self) -> None:
         """Sort the instances into batches, with all that hangs on their order."""
-        commands, numbers, self._batches = scene_pack.pack_draws(self._scene, self._geometry)
+        commands, numbers, self._batches = scene_pack.pack_draws(
+            self._scene, self._geometry, self.dynamic
+        )
         self._textures.upload(self._batches)
         table = self._table
         self._culling = Culling(commands, numbers, table.low, table.high, table.visible)
@@ -131,7 +136,7 @@ class GpuScene:
         """
         self.changes = list(self._material_changes.values())
         self._material_changes.clear()
-        if pose is not None and self.dynamic.any():
+        if pose is not None and len(pose.instances):
             bent = self._deformer.follow(pose) if self._deformer is not None else []
             moved, rows = self._table.follow(pose, bent)
             if rows:
@@ -159,7 +164,10 @@ class GpuScene:
         casts = scene_pack.opacity(before) != scene_pack.opacity(material)
         for change in self._table.material_changes(self._scene, index, casts):
             self._material_changes[change.instance] = change
-        if scene_pack.draw_state(before) != scene_pack.draw_state(material):
+            self._repaints[change.instance] += 1
+        restless = ~self.dynamic & (self._repaints >= RESTLESS_REPAINTS)
+        self.dynamic |= restless
+        if restless.any() or scene_pack.draw_state(before) != scene_pack.draw_state(material):
             self._release_order()
             self._arrange()
 

@@ -80,7 +80,7 @@ class Batch:
     count: int
     alpha_mode: AlphaMode
     dynamic: bool
-    """Whether a pose may move its instances; no pose moves those of other batches."""
+    """Whether its instances are dynamic; no pose moves those of other batches."""
     double_sided: bool
     textures: tuple[int, ...]
     """Texture numbers by SLOTS, -1 where a slot is empty."""
@@ -199,9 +199,12 @@ def area_light_flags(instances: int, area_lights: Sequence[AreaLight]) -> Array:
     return flags
 
 
-def pack_draws(scene: Scene, geometry: Geometry) -> tuple[Array, Array, list[Batch]]:
+def pack_draws(
+    scene: Scene, geometry: Geometry, dynamic: Array
+) -> tuple[Array, Array, list[Batch]]:
     """(commands (D,) DRAW_COMMAND, instance numbers (N,) uint32 in draw order, batches).
 
+    dynamic (N,) bool by instance number.
     Commands of one batch, batches of one alpha mode, and among those the static and the dynamic
     ones lie together; instances of one mesh share a command unless they bend, but a blended one is
     a batch of its own, to be sorted.
@@ -209,7 +212,7 @@ def pack_draws(scene: Scene, geometry: Geometry) -> tuple[Array, Array, list[Bat
     numbers = range(len(scene.instances))
     mesh_of = [instance.mesh for instance in scene.instances]
     drawn_as = list(zip(mesh_of, geometry.placed_vertex.tolist(), strict=True))
-    keys = [_batch_key(scene, number) for number in numbers]
+    keys = [_batch_key(scene, number, bool(dynamic[number])) for number in numbers]
     order = sorted(numbers, key=lambda number: (keys[number], drawn_as[number], number))
     commands: list[tuple[int, int, int, int, int]] = []
     batches: list[Batch] = []
@@ -239,13 +242,15 @@ def instance_boxes(scene: Scene) -> tuple[Array, Array]:
     return np.array(low), np.array(high)
 
 
-def _batch_key(scene: Scene, number: int) -> tuple[int, bool, bool, tuple[int, ...], bool, int]:
+def _batch_key(
+    scene: Scene, number: int, dynamic: bool
+) -> tuple[int, bool, bool, tuple[int, ...], bool, int]:
     """(place in CATEGORIES, dynamic, then Batch's fields from `double_sided` to `instance`)."""
     instance = scene.instances[number]
     material = scene.materials[scene.meshes[instance.mesh].material]
     category, double_sided, textures, transforms_uv = draw_state(material)
     alone = number if material.alpha_mode == "blend" else -1
-    return category, instance.dynamic, double_sided, textures, transforms_uv, alone
+    return category, dynamic, double_sided, textures, transforms_uv, alone
 
 
 def draw_state(material: Material) -> tuple[int, bool, tuple[int, ...], bool]:

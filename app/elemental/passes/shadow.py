@@ -54,6 +54,7 @@ class ShadowMaps:
         self._drawn: dict[int, bytes] = {}
         self._still: Texture | None = None
         self._still_drawn: dict[int, bytes] = {}
+        self._dynamic = b""
         self._drawn_version = 0
 
     def reads(self) -> dict[str, Ref]:
@@ -96,6 +97,9 @@ class ShadowMaps:
 
     def _forget_changed(self, plan: ShadowPlan, scene: GpuScene) -> None:
         """Forget the maps that show what changed since they were drawn."""
+        if self._dynamic != scene.dynamic.tobytes():
+            self._dynamic = scene.dynamic.tobytes()
+            self._still_drawn.clear()
         drawn, self._drawn_version = self._drawn_version, scene.version
         if scene.version == drawn:
             return

@@ -253,6 +253,26 @@ def test_materials_of_what_moves_and_of_what_stands(device: Device, lit: Lit) ->
         item.release()
 
 
+def test_what_is_painted_again_and_again_counts_as_moving(device: Device) -> None:
+    """In a scene in which nothing can move, too: from its third material on."""
+    lit = Lit(device, world(0))
+    voxels = lit.lighting(32)
+    update(lit, voxels)
+    seen = []
+    for red in (0.2, 0.4, 0.6, 0.8):
+        lit.gpu.set_material(1, colored(red, 0.3, 0.1))
+        lit.gpu.update(None)
+        seen.append(rasterized(update(lit, voxels)))
+        device.finish()
+        other = fresh(lit, voxels)
+        assert_same(held(voxels.octree), held(other.octree))
+        other.release()
+    assert seen == [{""}, {"still", "moving"}, {"moving"}, {"moving"}]
+    assert lit.gpu.dynamic.tolist() == [False, True, False]
+    for item in (voxels, lit):
+        item.release()
+
+
 def test_frames_that_were_missed_are_made_up_for(device: Device, lit: Lit) -> None:
     """Poses that the octree did not see, while nobody looked at indirect light."""
     walk = Walk(lit.scene, np.random.default_rng(10))

@@ -55,6 +55,7 @@ class VoxelLighting:
         self.scene = scene
         self.budget_bytes = budget_bytes
         self._moves = bool(scene.dynamic.any())
+        self._dynamic = scene.dynamic.tobytes()
         if capacity is None:
             capacity = self._room_for(sizing.count(device, scene, grid, area_m2))
         self._allocate(grid, capacity, max_emission)
@@ -116,6 +117,7 @@ class VoxelLighting:
         move, one gather a frame of what the octree held in the last, of what changed and of a slice
         of the rest, until light has gone round ``bounces`` times since.
         """
+        self._divide()
         gathers = bounces > 1
         # Area lights reach voxels by gathering alone.
         key = (light_key, bounces, area_lights.tobytes() if gathers else b"")
@@ -153,6 +155,19 @@ class VoxelLighting:
             compress(g, self.octree, filter_levels(g, self.octree, sided))
         self._lit_by = key
         return self.octree
+
+    def _divide(self) -> None:
+        """Build anew where other instances than before count as dynamic, in steps from now on."""
+        if self._dynamic == self.scene.dynamic.tobytes():
+            return
+        self._dynamic = self.scene.dynamic.tobytes()
+        self.invalidate("geometry")
+        if not self._moves:
+            octree, self._moves = self.octree, True
+            self.release()
+            known = self.counts != NOTHING
+            room = self._room_for(self.counts) if known else octree.capacity
+            self._allocate(octree.grid, room, octree.max_emission)
 
     def _next_slice(self) -> range:
         """Blocks of leaf points, another eighth each time."""
