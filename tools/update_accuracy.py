@@ -3,7 +3,8 @@
 python tools/update_accuracy.py [NAME…]                  the figures of these cases, or of all
 python tools/update_accuracy.py --references [NAME…]     path-trace their pictures first (mitsuba)
 
-`--dry` prints and writes nothing; `--set KEY=VALUE` measures with other settings, as `--dry`.
+`--dry` prints and writes nothing; `--set KEY=VALUE` measures with other settings, as `--dry`. What fell
+behind stays as it was in the table unless `--worse` takes it over.
 """
 
 from __future__ import annotations
@@ -63,6 +64,7 @@ def main() -> None:
     parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(ratchet.CASES))
     parser.add_argument("--references", action="store_true")
     parser.add_argument("--dry", action="store_true")
+    parser.add_argument("--worse", action="store_true")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
     words = parser.parse_args()
     names = words.names or list(ratchet.CASES)
@@ -80,7 +82,8 @@ def main() -> None:
         before = table["cases"].get(name, now)
         line = "  ".join(f"{key} {before[key]:+.4f} -> {now[key]:+.4f}" for key in now)
         print(f"{name:20s} {line}  {'WORSE' if ratchet.worse(now, before) else ''}", flush=True)
-        table["cases"][name] = {key: round(value, 4) for key, value in now.items()}
+        kept = now if words.worse else {k: min(now[k], before[k], key=abs) for k in now}
+        table["cases"][name] = {key: round(value, 4) for key, value in kept.items()}
     if not (words.dry or words.set):
         write(table)
 

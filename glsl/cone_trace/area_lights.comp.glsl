@@ -6,12 +6,13 @@
 #include "lib/interleave.glsl"
 #include "lib/packing.glsl"
 #include "lib/view.glsl"
+#include "shared/gbuffer.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 uniform sampler2D u_depth;
 uniform sampler2D u_gbuffer_a;
-// Irradiance with shadow; luminance of it without.
+// Irradiance with shadow; luminance of it without; both by the brightest face's radiance.
 layout(rgba16f) writeonly uniform image2D o_irradiance;
 
 void main() {
@@ -25,13 +26,13 @@ void main() {
 
     vec4 result = vec4(0.0);
     float depth = texelFetch(u_depth, pixel, 0).r;
-    if (depth < 1.0) {
+    if (depth < DEPTH_CLEAR) {
         vec3 normal = normal10_decode(texelFetch(u_gbuffer_a, pixel, 0).xyz);
         vec3 p_ws = position_ws_at((vec2(pixel) + 0.5) * u_view.viewport_px.zw, depth);
         AreaSample s = sample_area_lights(p_ws, normal, stratum);
         if (s.face >= 0 && dot(s.point_ws - p_ws, normal) > 0.0) {
             float visible = area_visibility(p_ws, normal, s.face, s.point_ws, s.radius);
-            result = vec4(s.irradiance * visible, luminance(s.irradiance));
+            result = u_area_lights.inverse_radiance * vec4(s.irradiance * visible, luminance(s.irradiance));
         }
     }
     imageStore(o_irradiance, at + part * cone_offset(stratum), result);

@@ -140,7 +140,7 @@ void main() {
         float visible = luminance(from_area.rgb) / from_area.a;
         broad.rgb += visible * area_lobe_radiance(p_ws, normal, mirrored, half_angle);
     }
-    imageStore(o_broad_gi, pixel, broad);
+    imageStore(o_broad_gi, pixel, min(broad, HALF_MAX));
 #endif
-    imageStore(o_diffuse_gi, pixel, gathered);
+    imageStore(o_diffuse_gi, pixel, min(gathered, HALF_MAX));
 }

@@ -6,6 +6,7 @@
 #include "lib/packing.glsl"
 #include "lib/view.glsl"
 #include "lib/interleave.glsl"
+#include "shared/gbuffer.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -24,7 +25,7 @@ void main() {
 
     vec4 result = vec4(0.0, 0.0, 0.0, REJECTED);
     float depth = texelFetch(u_depth, pixel, 0).r;
-    if (depth < 1.0) {
+    if (depth < DEPTH_CLEAR) {
         vec3 normal = normal10_decode(texelFetch(u_gbuffer_a, pixel, 0).xyz);
         vec3 p_ws = position_ws_at((vec2(pixel) + 0.5) * u_view.viewport_px.zw, depth);
         result = diffuse_cone(p_ws, normal, cone);

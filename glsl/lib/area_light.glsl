@@ -149,11 +149,11 @@ vec3 area_lobe_radiance(vec3 p_ws, vec3 normal, vec3 direction, float half_angle
     return sum;
 }
 
-// The nearest face that a cone meets.
+// What a cone meets of faces at one distance.
 struct AreaHit {
-    float distance_m;
-    float share;        // of the cone's width that the face covers
-    vec3 radiance;
+    float distance_m;   // of the nearest
+    float share;        // of the cone's width that they cover
+    vec3 radiance;      // mean over what is covered
 };
 
 // Share of the interval x +- reach that lies in 0..1.
@@ -161,21 +161,34 @@ float covered_share(float x, float reach) {
     return max(min(x + reach, 1.0) - max(x - reach, 0.0), 0.0) / (2.0 * reach);
 }
 
-AreaHit hit_area_lights(vec3 origin, vec3 direction, float half_angle) {
+// Distance along a ray to a face and the share of the cone that it covers; share 0: not met.
+vec2 meet_face(AreaLight face, vec3 origin, vec3 direction, float half_angle) {
+    vec3 front = cross(face.edge_u_ws, face.edge_v_ws) / face.area_m2;
+    float approach = -dot(front, direction);
+    if (abs(approach) < 1e-4 || (approach < 0.0 && face.both_sides == 0.0)) return vec2(0.0);
+    float t = dot(origin - face.corner_ws, front) / approach;
+    if (t <= 0.0) return vec2(0.0);
+    vec3 at = origin + t * direction - face.corner_ws;
+    vec2 place = vec2(dot(cross(at, face.edge_v_ws), front), dot(cross(face.edge_u_ws, at), front)) / face.area_m2;
+    vec2 reach = max(t * tan(half_angle), 1e-6) / vec2(length(face.edge_u_ws), length(face.edge_v_ws));
+    return vec2(t, covered_share(place.x, reach.x) * covered_share(place.y, reach.y));
+}
+
+// The nearest face beyond `from_m` together with those up to `depth_m` behind it: tiles of one panel
+// add up.
+AreaHit hit_area_lights(vec3 origin, vec3 direction, float half_angle, float from_m, float depth_m) {
     AreaHit hit = AreaHit(0.0, 0.0, vec3(0.0));
+    float nearest = 1e30;
     for (int i = 0; i < u_area_lights.count; ++i) {
-        AreaLight face = u_area_lights.faces[i];
-        vec3 front = cross(face.edge_u_ws, face.edge_v_ws) / face.area_m2;
-        float approach = -dot(front, direction);
-        if (abs(approach) < 1e-4 || (approach < 0.0 && face.both_sides == 0.0)) continue;
-        float t = dot(origin - face.corner_ws, front) / approach;
-        if (t <= 0.0 || (hit.share > 0.0 && t > hit.distance_m)) continue;
-        vec3 at = origin + t * direction - face.corner_ws;
-        vec2 place = vec2(dot(cross(at, face.edge_v_ws), front), dot(cross(face.edge_u_ws, at), front)) / face.area_m2;
-        float reach = max(t * tan(half_angle), 1e-6);
-        vec2 lengths = vec2(length(face.edge_u_ws), length(face.edge_v_ws));
-        float share = covered_share(place.x, reach / lengths.x) * covered_share(place.y, reach / lengths.y);
-        if (share > 0.0) hit = AreaHit(t, share, face.radiance);
+        vec2 met = meet_face(u_area_lights.faces[i], origin, direction, half_angle);
+        if (met.y > 0.0 && met.x > from_m) nearest = min(nearest, met.x);
     }
-    return hit;
+    if (nearest == 1e30) return hit;
+    for (int i = 0; i < u_area_lights.count; ++i) {
+        vec2 met = meet_face(u_area_lights.faces[i], origin, direction, half_angle);
+        if (met.y <= 0.0 || met.x < nearest || met.x > nearest + depth_m) continue;
+        hit.share += met.y;
+        hit.radiance += met.y * u_area_lights.faces[i].radiance;
+    }
+    return AreaHit(nearest, min(hit.share, 1.0), hit.radiance / hit.share);
 }

@@ -39,7 +39,7 @@ struct Run {
 const float FULLEST = 0.7;        // of a layer's opacity that the fullest sample has at least
 // Coarse levels' layers are a little thicker than a voxel; the finest level's voxels stand in steps where
 // the lattice cuts a layer at an angle, and a narrow cone meets fewer of them than there are on average.
-const float COARSE_SHARE = 0.87;
+const float COARSE_SHARE = 0.86;
 const float FINEST_SHARE = 1.3;
 
 // Nearly all or nearly nothing is all or nothing: sums over steps are off by some percent.
@@ -112,7 +112,7 @@ struct Clearance {
     float start;
     float slope;
 };
-const float CLEARANCE_VOXELS = 2.5;
+const float CLEARANCE_VOXELS = 4.0;
 const Clearance NO_SURFACE = Clearance(1e9, 0.0);
 
 float height_at(Clearance c, float t) { return c.start + c.slope * t; }

@@ -10,6 +10,13 @@ const float DIFFUSE_START = 1.0;
 // A cone that points closer to the surface is lifted to this sine: half of it is below anyway.
 const float LEAST_ELEVATION = 0.25;
 
+#if CONE_SPLIT == 1
+const float SKY_HALF_ANGLE = CONE_HALF_ANGLE;
+#else
+// Narrow cones' discs leave gaps between them, through which a sun in the sky would fall.
+const float SKY_HALF_ANGLE = 1.4 * CONE_HALF_ANGLE;
+#endif
+
 const float REJECTED = -1.0;  // alpha of a group that lies behind the surface whole
 
 // Mean over a group's cones, by weight, of (radiance, visibility of the sky); those behind the
@@ -28,7 +35,7 @@ vec4 diffuse_cone(vec3 p_ws, vec3 normal, int cone) {
         Clearance clearance = Clearance(DIFFUSE_NORMAL_BIAS, dot(normal, lifted));
         vec4 traced = cone_trace_above(origin, lifted, CONE_HALF_ANGLE, DIFFUSE_START * voxel, clearance);
         float visible = 1.0 - traced.a;
-        sum += weight * vec4(traced.rgb + visible * sky_radiance(direction, CONE_HALF_ANGLE), visible);
+        sum += weight * vec4(traced.rgb + visible * sky_radiance(direction, SKY_HALF_ANGLE), visible);
         weights += weight;
     }
     return weights > 0.0 ? sum / weights : vec4(0.0, 0.0, 0.0, REJECTED);

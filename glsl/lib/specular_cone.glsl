@@ -16,6 +16,7 @@ const float SPECULAR_NORMAL_BIAS = 1.0;
 const float SPECULAR_START = 1.0;
 // Voxels before and behind an area light in which its own voxels would hide it.
 const float AREA_LIGHT_DEPTH = 1.5;
+const int AREA_LIGHTS_MET = 4;  // one behind the other that a cone may meet
 
 // Radiance along the mirrored eye vector, and the visibility of the sky there.
 vec4 specular_cone(vec3 p_ws, vec3 normal, float half_angle) {
@@ -26,14 +27,17 @@ vec4 specular_cone(vec3 p_ws, vec3 normal, float half_angle) {
     float voxel = u_octree.voxel_m;
     vec3 origin = p_ws + normal * (SPECULAR_NORMAL_BIAS * voxel);
     Clearance clearance = Clearance(SPECULAR_NORMAL_BIAS, dot(direction, normal));
-    AreaHit hit = hit_area_lights(origin, direction, half_angle);
-    float end = hit.share > 0.0 ? hit.distance_m - AREA_LIGHT_DEPTH * voxel : CONE_ENDLESS;
-    vec4 cone = cone_trace_between(origin, direction, half_angle, SPECULAR_START * voxel, end, clearance, NO_SURFACE);
-    if (hit.share > 0.0) {
+    float depth = AREA_LIGHT_DEPTH * voxel;
+    float from = SPECULAR_START * voxel;
+    vec4 cone = vec4(0.0);
+    for (int i = 0; i < AREA_LIGHTS_MET && cone.a < CONE_OPAQUE; ++i) {
+        AreaHit hit = hit_area_lights(origin, direction, half_angle, from, depth);
+        if (hit.share == 0.0) break;
+        cone += (1.0 - cone.a) * cone_trace_between(origin, direction, half_angle, from, hit.distance_m - depth, clearance, NO_SURFACE);
         cone += (1.0 - cone.a) * hit.share * vec4(hit.radiance, 1.0);
-        float behind = hit.distance_m + AREA_LIGHT_DEPTH * voxel;
-        if (cone.a < CONE_OPAQUE) cone += (1.0 - cone.a) * cone_trace_above(origin, direction, half_angle, behind, clearance);
+        from = hit.distance_m + depth;
     }
+    if (cone.a < CONE_OPAQUE) cone += (1.0 - cone.a) * cone_trace_above(origin, direction, half_angle, from, clearance);
     float visible = 1.0 - cone.a;
     return vec4(cone.rgb + visible * sky_radiance(direction, half_angle), visible);
 }

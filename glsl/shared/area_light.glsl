@@ -14,5 +14,6 @@ struct AreaLight {
 
 layout(std140) uniform AreaLights {
     int count;
+    float inverse_radiance;  // of the brightest face: keeps irradiance within a half float
     AreaLight faces[AREA_LIGHTS_MAX];
 } u_area_lights;

@@ -55,7 +55,10 @@ def two_rooms(wall_m: float, world: Array) -> Scene:
 
 
 def leak(device: Device, wall_voxels: float, turn: str, phase: float = 0.0) -> tuple[float, float]:
-    """Mean and largest light on the sealed room's walls, by the mean on the bright one's."""
+    """Mean and largest light on the sealed room's walls, by the mean on the bright one's.
+
+    Raises ValueError where the bright room is dark.
+    """
     wall_m = wall_voxels * GRID.voxel_m
     world = np.asarray(at(*(phase * GRID.voxel_m,) * 3) @ TURNS[turn])
     made = Stage(device, two_rooms(wall_m, world), grid=GRID, bounces=GATHERS)
@@ -71,4 +74,6 @@ def leak(device: Device, wall_voxels: float, turn: str, phase: float = 0.0) -> t
         light.append(gather(made, local @ rotation + world[:3, 3], normal @ rotation)[:, 0])
     made.release()
     bright = float(light[0].mean())
+    if bright <= 0.0:
+        raise ValueError("the lamp's room is dark: there is nothing to leak")
     return float(light[1].mean()) / bright, float(light[1].max()) / bright

@@ -139,7 +139,13 @@ def test_a_panel_wider_than_the_lobe_is_seen_at_its_own_radiance(device: Device)
     np.testing.assert_allclose(far[0, 0], 3.0 * 0.01 / (2 * np.pi * 0.0625), rtol=0.03)
 
 
-HIT = "vec4(hit_area_lights(p, d, a).distance_m, hit_area_lights(p, d, a).share, 0, 0)"
+HIT = "hit(p, d, a)"
+HIT_FUNCTION = """
+vec4 hit(vec3 p, vec3 d, float a) {
+    AreaHit h = hit_area_lights(p, d, a, 0.0, 0.1);
+    return vec4(h.distance_m, h.share, h.radiance.x, 0);
+}
+"""
 
 
 def test_a_ray_meets_the_nearest_face_that_it_points_at(device: Device) -> None:
@@ -150,8 +156,26 @@ def test_a_ray_meets_the_nearest_face_that_it_points_at(device: Device) -> None:
         "a": np.full(4, 1e-4, np.float32),
     }
     params = {"AreaLights": pack_area_lights(lights)}
-    found = run_glsl(device, LIB, HIT, inputs, "vec4", params=params)
+    found = run_glsl(device, LIB, HIT, inputs, "vec4", functions=HIT_FUNCTION, params=params)
     np.testing.assert_allclose(found[0, :2], [1.0, 1.0], rtol=1e-4)
     np.testing.assert_allclose(found[1, 1], 0.5, atol=0.01)  # along its edge
     assert found[2, 1] == 0.0  # beside it
     assert found[3, 1] == 0.0  # from behind
+
+
+@pytest.mark.parametrize("tiles", [1, 2, 4, 8])
+def test_tiles_of_a_panel_are_seen_as_the_panel(device: Device, tiles: int) -> None:
+    width = 3.0 / tiles
+    lights = [
+        face((-1.5 + k * width, 1.0, -1.5), (width, 0, 0), (0, 0, 3), 2.0) for k in range(tiles)
+    ]
+    inputs = {
+        "p": np.array([[0, 0, 0], [1.4, 0, 0]], np.float32),
+        "d": np.array([UP, UP], np.float32),
+        "a": np.full(2, 0.6, np.float32),
+    }
+    params = {"AreaLights": pack_area_lights(lights)}
+    found = run_glsl(device, LIB, HIT, inputs, "vec4", functions=HIT_FUNCTION, params=params)
+    np.testing.assert_allclose(found[0, :3], [1.0, 1.0, 2.0], rtol=1e-4)
+    inside = 0.5 + 0.1 / (2.0 * np.tan(0.6))
+    np.testing.assert_allclose(found[1, 1], inside, rtol=1e-3)

@@ -16,6 +16,8 @@ def pack_area_lights(lights: Sequence[AreaLight]) -> Block:
     unused = FACES_MAX - len(lights)
     edges_u = np.array([light.edge_u for light in lights] + [(1.0, 0.0, 0.0)] * unused)
     edges_v = np.array([light.edge_v for light in lights] + [(0.0, 1.0, 0.0)] * unused)
+    brightest = max((float(light.radiance.max()) for light in lights), default=0.0)
+    inverse = 1.0 / brightest if brightest > 0.0 else 1.0
     faces = pack_array(
         layouts().struct("AreaLight", "std140"),
         FACES_MAX,
@@ -26,4 +28,6 @@ def pack_area_lights(lights: Sequence[AreaLight]) -> Block:
         radiance=[light.radiance for light in lights] + [np.zeros(3)] * unused,
         both_sides=[float(light.both_sides) for light in lights] + [0.0] * unused,
     )
-    return pack(layouts().block("AreaLights"), faces=faces, count=len(lights))
+    return pack(
+        layouts().block("AreaLights"), faces=faces, count=len(lights), inverse_radiance=inverse
+    )
