@@ -113,6 +113,9 @@ struct Clearance {
     float slope;
 };
 const float CLEARANCE_VOXELS = 4.0;
+// Up to here voxels belong to the surface that a cone leaves, or to one that meets it at an edge: a cone
+// that sees their backs came out of them, and passes.
+const float NEAR_VOXELS = 2.0;
 const Clearance NO_SURFACE = Clearance(1e9, 0.0);
 
 float height_at(Clearance c, float t) { return c.start + c.slope * t; }
@@ -138,7 +141,9 @@ vec4 cone_trace_between(vec3 Pos, vec3 Direction, float ConeAngle, float start_m
 #if COUNT_CONE_STEPS
         ++cone_steps;
 #endif
-        float height = min(height_at(leaves, t), height_at(reaches, t));
+        float height = height_at(leaves, t);
+        view.backs = clamp(min(height, t) - NEAR_VOXELS, 0.0, 1.0);
+        height = min(height, height_at(reaches, t));
         float width = max(min(widening * t / CONE_FOOTPRINT, height / CLEARANCE_VOXELS), 1.0);
         vec3 p = origin + Direction * t;
         if (any(lessThan(p, vec3(0.0))) || any(greaterThanEqual(p, vec3(side)))) break;

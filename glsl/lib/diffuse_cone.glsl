@@ -4,8 +4,9 @@
 #include "lib/cone_directions.glsl"
 #include "lib/sky.glsl"
 
-// The march starts off the surface, whose own voxels reach this many finest voxels above it.
-const float DIFFUSE_NORMAL_BIAS = 1.0;
+// The march starts so many finest voxels off the surface: more, and it starts inside of what stands close
+// over it, as under the bulge of a ring that lies on a floor.
+const float DIFFUSE_NORMAL_BIAS = 0.5;
 const float DIFFUSE_START = 1.0;
 // A cone that points closer to the surface is lifted to this sine: half of it is below anyway.
 const float LEAST_ELEVATION = 0.25;

@@ -14,10 +14,11 @@ uniform sampler3D u_leaf_normals; // mean normal x opacity
 struct ViewOfVoxels {
     vec3 direction;
     uvec3 sides;   // that it sees
+    float backs;   // share of their opacity that leaves keep whose back it sees
 };
 
 ViewOfVoxels view_of_voxels(vec3 direction) {
-    return ViewOfVoxels(direction, sides_seen(direction));
+    return ViewOfVoxels(direction, sides_seen(direction), 1.0);
 }
 
 // Three trilinear lookups, one for each side that the ray sees, weighted by direction.
@@ -38,9 +39,10 @@ vec4 leaf_lookup(Node node, vec3 local, ViewOfVoxels view) {
     vec4 value = textureLod(u_leaf_colors, at, 0.0);
     if (value.a <= 0.0) return vec4(0.0);
     vec3 normal = textureLod(u_leaf_normals, at, 0.0).xyz / value.a;
+    float front = front_visibility(normal, view.direction);
     float opacity = min(value.a / voxels_an_area(normal), 1.0);
-    float shown = front_visibility(normal, view.direction) * opacity / value.a;
-    return vec4(value.rgb * (node_scale(node) * shown), opacity);
+    vec3 shown = value.rgb * (node_scale(node) * front * opacity / value.a);
+    return vec4(shown, opacity * mix(front, 1.0, view.backs));
 }
 
 vec4 node_lookup(Node node, int level, vec3 local, ViewOfVoxels view) {
