@@ -13,9 +13,9 @@
 // Content-adaptive steps, in voxels of the cone's level: a long one after a clear sample lands at most
 // on the middle of the next surface, a short one never steps over it.
 const float CONE_STEP = 0.5;
-const float CONE_STEP_CLEAR = 0.75;
+const float CONE_STEP_CLEAR = 1.0;
 const float CONE_CLEAR = 0.02;         // opacity below which a sample counts as clear
-const float CONE_OPAQUE = 0.98;        // stop where this much is hidden
+const float CONE_OPAQUE = 0.96;        // stop where this much is hidden
 const float CONE_SKIP_EPSILON = 0.01;  // finest voxels past the far side of an empty node
 const int CONE_STEPS_MAX = 256;
 #if COUNT_CONE_STEPS
@@ -39,7 +39,7 @@ struct Run {
 const float FULLEST = 0.7;        // of a layer's opacity that the fullest sample has at least
 // Coarse levels' layers are a little thicker than a voxel; the finest level's voxels stand in steps where
 // the lattice cuts a layer at an angle, and a narrow cone meets fewer of them than there are on average.
-const float COARSE_SHARE = 0.86;
+const float COARSE_SHARE = 0.84;
 const float FINEST_SHARE = 1.3;
 
 // Nearly all or nearly nothing is all or nothing: sums over steps are off by some percent.

@@ -141,8 +141,12 @@ const vec3 CONE_DIRECTIONS[63] = vec3[63](
     vec3(0.9827, -0.0819, 0.1660));
 #endif
 
+// Cones below, a tenth of those above the surface, bring a two-hundredth of its light.
+const float LEAST_COSINE = 0.1;
+
 float cone_weight(vec3 normal, vec3 direction) {
-    return pow(max(dot(normal, direction), 0.0), CONE_WEIGHT_POWER);
+    float cosine = dot(normal, direction);
+    return cosine > LEAST_COSINE ? pow(cosine, CONE_WEIGHT_POWER) : 0.0;
 }
 
 // What a group's weighted sum is divided by.
