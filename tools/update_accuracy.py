@@ -3,8 +3,8 @@
 python tools/update_accuracy.py [NAME…]                  the figures of these cases, or of all
 python tools/update_accuracy.py --references [NAME…]     path-trace their pictures first (mitsuba)
 
-`--dry` prints and writes nothing; `--set KEY=VALUE` measures with other settings, as `--dry`. What fell
-behind stays as it was in the table unless `--worse` takes it over.
+`--dry` prints and writes nothing; `--set KEY=VALUE` measures with other settings, as `--dry`. What
+fell behind stays as it was in the table unless `--worse` takes it over.
 """
 
 from __future__ import annotations

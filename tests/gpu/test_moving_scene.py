@@ -237,7 +237,9 @@ def test_bent_meshes_look_like_still_ones(renderers: Any) -> None:
     moving = renderers(world)
     picture(moving, 0.0)
     shown = picture(moving, 1.3)
-    np.testing.assert_array_equal(shown, picture(renderers(world), 1.3))  # with no past
+    fresh = picture(renderers(world), 1.3)  # with no past: its bricks stand elsewhere
+    np.testing.assert_allclose(shown, fresh, rtol=2.0**-9, atol=1e-4)
+    assert (shown != fresh).mean() < 0.01
     still = picture(renderers(posed(world, 1.3)), 0.0)
     differ = np.abs(shown - still)[..., :3].max(axis=2) > 0.02
     assert differ.mean() < 0.01  # rounding moves edges and voxels
