@@ -178,8 +178,10 @@ WIDER_NUMBER = re.compile(r"%[0-9]{3,}d")
 def frame_file(pattern: Path, frame: int) -> Path:
     """``out.%04d.png`` for frame 7 is ``out.0007.png``; a name without a pattern is itself.
 
-    Raises InputError for a number wider than two digits can say.
+    Raises InputError for a number wider than two digits can say, and for a path without a name.
     """
+    if not pattern.name:
+        raise InputError("-o", str(pattern), "is a folder")
     wider = WIDER_NUMBER.search(FRAME_NUMBER.sub("_", pattern.name))
     if wider is not None:
         raise InputError("-o", str(pattern), f"{wider[0]!r} is wider than 99 digits")

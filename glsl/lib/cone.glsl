@@ -4,9 +4,6 @@
 #ifndef COUNT_CONE_STEPS
 #define COUNT_CONE_STEPS 0
 #endif
-#ifndef CONE_STEP_SHARE
-#define CONE_STEP_SHARE 1.0  // of the steps below
-#endif
 
 #include "lib/svo_lookup.glsl"
 
@@ -150,18 +147,17 @@ vec4 cone_trace_between(vec3 Pos, vec3 Direction, float ConeAngle, float start_m
         float lod = min(log2(width), lod_last);
         ConeSample s = cone_sample(p, lod, guarded, inverse_direction, view);
         if (s.value.a < CONE_CLEAR) {
-            float clear_step = CONE_STEP_SHARE * width * CONE_STEP_CLEAR;
+            float clear_step = width * CONE_STEP_CLEAR;
             float way = s.empty_exit > 0.0 ? max(s.empty_exit + CONE_SKIP_EPSILON, width * CONE_STEP) : clear_step;
             gap = min(way - s.empty_exit, clear_step) / width;
             t += way;
             run = Run(0.0, 0.0, 0.0, 1.0 - gathered.a);
             continue;
         }
-        const float voxel_step = CONE_STEP_SHARE * CONE_STEP;
-        float fresh = extend(run, s.value.a, 0.5 * (gap + voxel_step), lod);
+        float fresh = extend(run, s.value.a, 0.5 * (gap + CONE_STEP), lod);
         gathered += fresh * vec4(s.value.rgb / s.value.a, 1.0);
-        gap = voxel_step;
-        t += width * voxel_step;
+        gap = CONE_STEP;
+        t += width * CONE_STEP;
         if (gathered.a > CONE_OPAQUE) {
             gathered /= gathered.a;
             break;

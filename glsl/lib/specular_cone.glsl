@@ -1,9 +1,5 @@
 // The specular cone of a pixel: as wide as the lobe of its surface.
 
-// What a mirror shows of a surface is seen: full steps meet it at another phase in each pixel, and
-// the reflection of what is a few voxels large breaks up along its rim.
-#define CONE_STEP_SHARE 0.7
-
 #include "lib/area_light.glsl"
 #include "lib/cone.glsl"
 #include "lib/brdf.glsl"

@@ -46,6 +46,7 @@ BAD_SHOTS: list[tuple[list[str], str]] = [
     (["-o", "out"], "must end in .png or .exr"),
     (["-o", "nowhere/out.png"], "the folder nowhere does not exist"),
     (["-o", "folder.png"], "is a folder"),
+    (["-o", "."], "is a folder"),
     (["-o", "corner.gltf/out.png"], "corner.gltf does not exist"),
     (["-o", "a" * 260 + ".png"], "File name too long"),
     (["-o", "a" * 200 + "%99d.png"], "File name too long"),
