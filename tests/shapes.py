@@ -40,6 +40,12 @@ def torus(major: float = 1.0, minor: float = 0.3, rings: int = 16) -> Shape:
     return _revolve(np.linspace(0.0, 2.0 * np.pi, rings + 1), major, minor, 2 * rings)
 
 
+def inward(shape: Shape) -> Shape:
+    """The same surface seen from its other side."""
+    positions, indices = shape
+    return positions, indices.reshape(-1, 3)[:, ::-1].ravel().copy()
+
+
 def _revolve(angles: npt.NDArray[np.float64], major: float, minor: float, segments: int) -> Shape:
     turn = np.linspace(0.0, 2.0 * np.pi, segments + 1)
     reach = major + minor * np.sin(angles)[:, None]

@@ -17,23 +17,19 @@ layout(rgba16f) writeonly uniform image2D o_irradiance;
 
 void main() {
     ivec2 size = ivec2(u_view.viewport_px.xy);
-    ivec2 part = sub_image_size(size);
-    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(at, part))) return;
-    int stratum = int(gl_WorkGroupID.z);
-    ivec2 pixel = at * 3 + cone_offset(stratum);
-    if (any(greaterThanEqual(pixel, size))) return;
+    InterleavedPixel own = interleaved_pixel(gl_GlobalInvocationID, size);
+    if (!own.inside) return;
 
     vec4 result = vec4(0.0);
-    float depth = texelFetch(u_depth, pixel, 0).r;
+    float depth = texelFetch(u_depth, own.pixel, 0).r;
     if (depth < DEPTH_CLEAR) {
-        vec3 normal = normal10_decode(texelFetch(u_gbuffer_a, pixel, 0).xyz);
-        vec3 p_ws = position_ws_at((vec2(pixel) + 0.5) * u_view.viewport_px.zw, depth);
-        AreaSample s = sample_area_lights(p_ws, normal, stratum);
+        vec3 normal = normal10_decode(texelFetch(u_gbuffer_a, own.pixel, 0).xyz);
+        vec3 p_ws = position_ws_at((vec2(own.pixel) + 0.5) * u_view.viewport_px.zw, depth);
+        AreaSample s = sample_area_lights(p_ws, normal, own.cone);
         if (s.face >= 0 && dot(s.point_ws - p_ws, normal) > 0.0) {
             float visible = area_visibility(p_ws, normal, s.face, s.point_ws, s.radius);
             result = u_area_lights.inverse_radiance * vec4(s.irradiance * visible, luminance(s.irradiance));
         }
     }
-    imageStore(o_irradiance, at + part * cone_offset(stratum), result);
+    imageStore(o_irradiance, own.texel, result);
 }

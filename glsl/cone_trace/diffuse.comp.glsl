@@ -16,19 +16,15 @@ layout(rgba16f) writeonly uniform image2D o_radiance;
 
 void main() {
     ivec2 size = ivec2(u_view.viewport_px.xy);
-    ivec2 part = sub_image_size(size);
-    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(at, part))) return;
-    int cone = int(gl_WorkGroupID.z);
-    ivec2 pixel = at * 3 + cone_offset(cone);
-    if (any(greaterThanEqual(pixel, size))) return;
+    InterleavedPixel own = interleaved_pixel(gl_GlobalInvocationID, size);
+    if (!own.inside) return;
 
     vec4 result = vec4(0.0, 0.0, 0.0, REJECTED);
-    float depth = texelFetch(u_depth, pixel, 0).r;
+    float depth = texelFetch(u_depth, own.pixel, 0).r;
     if (depth < DEPTH_CLEAR) {
-        vec3 normal = normal10_decode(texelFetch(u_gbuffer_a, pixel, 0).xyz);
-        vec3 p_ws = position_ws_at((vec2(pixel) + 0.5) * u_view.viewport_px.zw, depth);
-        result = diffuse_cone(p_ws, normal, cone);
+        vec3 normal = normal10_decode(texelFetch(u_gbuffer_a, own.pixel, 0).xyz);
+        vec3 p_ws = position_ws_at((vec2(own.pixel) + 0.5) * u_view.viewport_px.zw, depth);
+        result = diffuse_cone(p_ws, normal, own.cone);
     }
-    imageStore(o_radiance, at + part * cone_offset(cone), result);
+    imageStore(o_radiance, own.texel, result);
 }

@@ -15,10 +15,11 @@ float edge_irradiance(vec3 a, vec3 b, vec3 normal) {
     return sine > 0.0 ? dot(across, normal) * (atan(sine, dot(a, b)) / sine) : 0.0;
 }
 
+// Unit normal of a face's front.
+vec3 front_of_face(AreaLight face) { return cross(face.edge_u_ws, face.edge_v_ws) / face.area_m2; }
+
 // Signed distance of p from the plane of a face; its front is positive.
-float height_over_face(AreaLight face, vec3 p_ws) {
-    return dot(p_ws - face.corner_ws, cross(face.edge_u_ws, face.edge_v_ws)) / face.area_m2;
-}
+float height_over_face(AreaLight face, vec3 p_ws) { return dot(p_ws - face.corner_ws, front_of_face(face)); }
 
 // Of a face's size: what is so near its plane is the face itself, by rounding, and gets nothing.
 const float LEAST_HEIGHT = 1e-3;
@@ -128,7 +129,7 @@ vec3 area_lobe_radiance(vec3 p_ws, vec3 normal, vec3 direction, float half_angle
     float shadowing = half_angle * half_angle / 16.0;  // half of GGX's alpha: see specular_cone_half_angle
     for (int i = 0; i < u_area_lights.count; ++i) {
         AreaLight face = u_area_lights.faces[i];
-        vec3 front = cross(face.edge_u_ws, face.edge_v_ws) / face.area_m2;
+        vec3 front = front_of_face(face);
         float part_m2 = 0.25 * face.area_m2;
         for (int k = 0; k < 4; ++k) {
             vec2 at = vec2(k & 1, k >> 1) * 0.5 + 0.25;
@@ -163,7 +164,7 @@ float covered_share(float x, float reach) {
 
 // Distance along a ray to a face and the share of the cone that it covers; share 0: not met.
 vec2 meet_face(AreaLight face, vec3 origin, vec3 direction, float half_angle) {
-    vec3 front = cross(face.edge_u_ws, face.edge_v_ws) / face.area_m2;
+    vec3 front = front_of_face(face);
     float approach = -dot(front, direction);
     if (abs(approach) < 1e-4 || (approach < 0.0 && face.both_sides == 0.0)) return vec2(0.0);
     float t = dot(origin - face.corner_ws, front) / approach;

@@ -6,3 +6,20 @@ ivec2 sub_image_size(ivec2 size) { return (size + 2) / 3; }
 
 // Where a pixel's sample stands.
 ivec2 sub_image_texel(ivec2 pixel, ivec2 size) { return pixel / 3 + sub_image_size(size) * (pixel % 3); }
+
+// What a thread of a dispatch over (x, y) of a sub-image and the nine works on.
+struct InterleavedPixel {
+    ivec2 pixel;
+    int cone;
+    ivec2 texel;   // where its result stands
+    bool inside;   // of the image
+};
+
+InterleavedPixel interleaved_pixel(uvec3 thread, ivec2 size) {
+    ivec2 part = sub_image_size(size);
+    ivec2 at = ivec2(thread.xy);
+    int cone = int(thread.z);
+    ivec2 pixel = at * 3 + cone_offset(cone);
+    bool inside = all(lessThan(at, part)) && all(lessThan(pixel, size));
+    return InterleavedPixel(pixel, cone, at + part * cone_offset(cone), inside);
+}

@@ -22,6 +22,12 @@ uvec2 block_sums(uint block) {
     return uvec2(node_blocks[block * BLOCK_WORDS + 2u], node_blocks[block * BLOCK_WORDS + 3u]);
 }
 
+// Bricks and tiles of a block with these bits.
+uvec2 node_counts(uvec2 bits, int level) {
+    uint tiles = level > u_octree.top_level ? bit_count64(used_bytes(bits)) : 0u;
+    return uvec2(bit_count64(bits), tiles);
+}
+
 // Where a group's own sums stand, as the number of a block.
 uint group_block(uint group) { return u_octree.block_count + group; }
 

@@ -1,4 +1,4 @@
-// Counting the bricks and tiles of 64-node blocks: for the prefix sums.
+// Writing how many bricks and tiles stand before a 64-node block: for the prefix sums.
 
 #include "shared/octree.glsl"
 #define NODE_BLOCKS_ACCESS coherent
@@ -7,9 +7,4 @@
 void write_sums(uint block, uvec2 sums) {
     node_blocks[block * BLOCK_WORDS + 2u] = sums.x;
     node_blocks[block * BLOCK_WORDS + 3u] = sums.y;
-}
-
-uvec2 node_counts(uvec2 bits, int level) {
-    uint tiles = level > u_octree.top_level ? bit_count64(used_bytes(bits)) : 0u;
-    return uvec2(bit_count64(bits), tiles);
 }

@@ -59,18 +59,18 @@ void set_coarser_point(ivec3 point, int level) {
 }
 
 #if DIRTY
+void set_dirty(uint word, uint bit) {
+    if ((dirty_words[word] & bit) == 0u) atomicOr(dirty_words[word], bit);
+}
+
 void set_dirty_node(ivec3 cell, int level) {
     uint code = grid_code(level, uvec3(cell));
-    uint word = dirty_node_word(level, code);
-    uint bit = cell_bit(code);
-    if ((dirty_words[word] & bit) == 0u) atomicOr(dirty_words[word], bit);
+    set_dirty(dirty_node_word(level, code), cell_bit(code));
 }
 
 void set_coarser_dirty(ivec3 point, int level) {
     uint code = grid_code(level, uvec3(point));
-    uint word = cell_word(level, code);
-    uint bit = cell_bit(code);
-    if ((dirty_words[word] & bit) == 0u) atomicOr(dirty_words[word], bit);
+    set_dirty(cell_word(level, code), cell_bit(code));
 }
 #endif
 

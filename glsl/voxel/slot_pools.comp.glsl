@@ -17,10 +17,6 @@ struct Ranks {
     uvec2 kept;
 };
 
-uvec2 counted(uvec2 bits, int level) {
-    return uvec2(bit_count64(bits), level > u_octree.top_level ? bit_count64(used_bytes(bits)) : 0u);
-}
-
 // Those before a level's first block.
 Ranks before_level(int level) {
     uint block = min(grid_first_block(level), u_octree.block_count - 1u);
@@ -29,8 +25,8 @@ Ranks before_level(int level) {
     if (level <= u_octree.leaf_level) return r;
     uvec2 bits = block_bits(block);
     uvec2 old = old_block_bits(block);
-    r.now += counted(bits, u_octree.leaf_level);
-    r.old += counted(old, u_octree.leaf_level);
+    r.now += node_counts(bits, u_octree.leaf_level);
+    r.old += node_counts(old, u_octree.leaf_level);
     r.kept += uvec2(bit_count64(bits & old), bit_count64(used_bytes(bits) & used_bytes(old)));
     return r;
 }

@@ -14,30 +14,19 @@ import numpy.typing as npt
 from elemental.gpu.device import Device
 from elemental.passes.voxel.grid import Grid
 from elemental.scene.model import Scene
-from gpu.rig import IDENTITY, at, scene, vector
+from gpu.rig import at, scene, vector
 from gpu.voxel.probe import gather
-from gpu.voxel.scenes import colored, glowing, part, turned
+from gpu.voxel.scenes import TURNS, colored, glowing, part
 from gpu.voxel.stage import Stage
-from shapes import Shape, box
+from shapes import box, inward
 
 Array = npt.NDArray[Any]
 
 ROOM_M = 0.9
 GRID = Grid.fit((vector(-1.5, -1.5, -1.5), vector(1.5, 1.5, 1.5)), 64)
-TURNS = {
-    "straight": IDENTITY,
-    "turned": turned(vector(0.3, 1.0, 0.2), 0.6),
-    "diagonal": turned(vector(0, 1, 0), np.pi / 4),
-}
 PHASES = (0.0, 1.0 / 3.0, 2.0 / 3.0)
 """Where the walls stand between lattice points, in voxels along each axis."""
 GATHERS = 3
-
-
-def inward(shape: Shape) -> Shape:
-    """The same surface seen from its other side."""
-    positions, indices = shape
-    return positions, indices.reshape(-1, 3)[:, ::-1].ravel().copy()
 
 
 def two_rooms(wall_m: float, world: Array) -> Scene:

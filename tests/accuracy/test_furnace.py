@@ -14,14 +14,13 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from accuracy.sealed import inward
 from elemental.frame import Renderer
 from elemental.gpu.device import Device
 from elemental.scene.model import Scene
 from elemental.settings import Settings
 from gpu.rig import IDENTITY, camera, material, scene, vector
-from gpu.voxel.scenes import colored, part, turned
-from shapes import box
+from gpu.voxel.scenes import TURNS, colored, part
+from shapes import box, inward
 
 Array = npt.NDArray[Any]
 
@@ -31,7 +30,7 @@ SIDE_M, WALL_M = 2.0, 0.15
 CAMERA = camera(vector(-0.3, 0.1, 0.4), vector(0.5, -0.2, -0.6), fov_y=1.2)
 GATHERS = (2, 4, 6)
 """Evenly spaced, so that the limit of a geometric series follows from three of its sums."""
-TURN = turned(vector(0.3, 1.0, 0.2), 0.6)
+TURN = TURNS["turned"]
 
 
 def room(world: Array, thick: bool) -> Scene:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from elemental.core import transforms
 from elemental.passes.voxel.grid import Grid
 from elemental.scene.model import Material, Mesh, Scene
-from gpu.rig import at, material, mesh, scene, sun, vector
+from gpu.rig import IDENTITY, at, material, mesh, scene, sun, vector
 from shapes import Shape, box, quad, sphere, torus
 
 Array = npt.NDArray[Any]
@@ -24,6 +24,14 @@ def turned(axis: Array, angle: float, *, to: tuple[float, float, float] = (0, 0,
     return transforms.compose(
         np.array(to, np.float32), quaternion.astype(np.float32), np.ones(3, np.float32)
     )
+
+
+TURNS = {
+    "straight": IDENTITY,
+    "turned": turned(vector(0.3, 1.0, 0.2), 0.6),
+    "diagonal": turned(vector(0, 1, 0), np.pi / 4),
+}
+"""How a room may lie across the lattice: world_from_local by name."""
 
 
 def facing(normal: Array) -> Array:

@@ -36,6 +36,15 @@ def fresh(lit: Lit, like: VoxelLighting, bounces: int = 1) -> VoxelLighting:
     return made
 
 
+def assert_fresh(lit: Lit, voxels: VoxelLighting) -> None:
+    """Nothing was dropped, and a fresh build counts and holds the same."""
+    other = fresh(lit, voxels)
+    assert voxels.counts == other.counts
+    assert not voxels.counts.overflowed
+    assert_same(held(voxels.octree), held(other.octree))
+    other.release()
+
+
 @pytest.mark.parametrize("resolution", [32, 64])
 @pytest.mark.parametrize("share", [0.2, 1.0])
 def test_a_walk_leaves_what_a_fresh_build_makes(
@@ -46,11 +55,7 @@ def test_a_walk_leaves_what_a_fresh_build_makes(
     for frame in range(12):
         show(device, lit, voxels, walk.step())
         if frame % 3 == 2:
-            other = fresh(lit, voxels)
-            assert voxels.counts == other.counts
-            assert not voxels.counts.overflowed
-            assert_same(held(voxels.octree), held(other.octree))
-            other.release()
+            assert_fresh(lit, voxels)
     voxels.release()
 
 
@@ -197,11 +202,7 @@ def test_regions_of_several_levels_follow_too(device: Device, lit: Lit) -> None:
     for frame in range(9):
         show(device, lit, voxels, walk.step())
         if frame % 3 == 2:
-            other = fresh(lit, voxels)
-            assert voxels.counts == other.counts
-            assert not voxels.counts.overflowed
-            assert_same(held(voxels.octree), held(other.octree))
-            other.release()
+            assert_fresh(lit, voxels)
     voxels.release()
 
 

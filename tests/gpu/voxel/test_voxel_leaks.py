@@ -15,31 +15,20 @@ import pytest
 
 from elemental.passes.voxel.grid import Grid
 from elemental.scene.model import Environment, Light, Mesh, Scene
-from gpu.rig import IDENTITY, at, mesh, scene, sun, vector
+from gpu.rig import at, mesh, scene, sun, vector
 from gpu.voxel.pools import Pools, leaf_values
 from gpu.voxel.probe import gather
-from gpu.voxel.scenes import colored, facing, glowing, part, turned
+from gpu.voxel.scenes import TURNS, colored, facing, glowing, part
 from gpu.voxel.stage import MakeStage, Stage
-from shapes import Shape, box
+from shapes import box, inward
 
 Array = npt.NDArray[Any]
 
 INSIDE = 1.7
 """Side of a room, m."""
 GRID = Grid.fit((vector(-1.45, -1.45, -1.45), vector(1.45, 1.45, 1.45)), 64)
-TURNS = {
-    "straight": IDENTITY,
-    "turned": turned(vector(0.3, 1.0, 0.2), 0.6),
-    "diagonal": turned(vector(0, 1, 0), np.pi / 4),
-}
 SKY = Environment(None, vector(1, 1, 1), 1.0)
 SUN = sun(vector(0.4, -1.0, 0.3), 5.0)
-
-
-def inward(shape: Shape) -> Shape:
-    """The same surface seen from its other side."""
-    positions, indices = shape
-    return positions, indices.reshape(-1, 3)[:, ::-1].ravel().copy()
 
 
 def room(
