@@ -28,17 +28,11 @@ from elemental.scene.model import (
     unique_name,
 )
 from elemental.scene.motion import RigBuilder
-from elemental.scene.scene_file import (
-    CameraTable,
-    EnvironmentTable,
-    LightTable,
-    ModelTable,
-    PathTable,
-    SceneFile,
-    flat_settings,
-    read_scene_file,
-)
+from elemental.scene.scene_file import SceneFile, flat_settings, read_scene_file
 from elemental.scene.scene_motions import Movers
+from elemental.scene.tables.cameras import CameraTable, PathTable
+from elemental.scene.tables.lights import EnvironmentTable, LightTable
+from elemental.scene.tables.models import ModelTable
 
 TEXTURE_SLOTS = (
     "base_color_texture",

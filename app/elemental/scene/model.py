@@ -2,85 +2,49 @@
 
 World space is right-handed, y up, in metres. Colours are linear with Rec. 709 primaries.
 Photometric and radiometric units are not told apart: lux stands for W/m^2, candela for W/sr and
-nit for W/(m^2 sr), as in glTF files without a luminous efficacy.
+nit for W/(m^2 sr), as in glTF files without a luminous efficacy. The parts live by topic in
+`arrays`, `materials`, `lights` and `cameras`; other packages import them all from here.
 """
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
 from elemental.core import transforms
+from elemental.scene.arrays import ByteArray, FloatArray, IndexArray
+from elemental.scene.cameras import Camera, CameraPath, framing_camera
+from elemental.scene.lights import Environment, Light, LightKind
+from elemental.scene.materials import AlphaMode, Material, Texture, TextureSlot, Wrap
 from elemental.scene.motion import Influences, Morphs, Motion
 
-FloatArray: TypeAlias = npt.NDArray[np.float32]
-ByteArray: TypeAlias = npt.NDArray[np.uint8]
-IndexArray: TypeAlias = npt.NDArray[np.uint32]
+__all__ = [
+    "AlphaMode",
+    "ByteArray",
+    "Camera",
+    "CameraPath",
+    "Environment",
+    "FloatArray",
+    "IndexArray",
+    "Instance",
+    "Light",
+    "LightKind",
+    "Material",
+    "Mesh",
+    "Region",
+    "Scene",
+    "SettingValue",
+    "Texture",
+    "TextureSlot",
+    "Wrap",
+    "framing_camera",
+    "unique_name",
+]
 
-Wrap: TypeAlias = Literal["repeat", "clamp", "mirror"]
-AlphaMode: TypeAlias = Literal["opaque", "mask", "blend"]
-LightKind: TypeAlias = Literal["directional", "point", "spot"]
 SettingValue: TypeAlias = bool | int | float | str | list[float]
-
-
-@dataclass
-class Texture:
-    """An image with its sampler. `pixels` is (H, W, 4) uint8 as stored: row 0 is v = 0."""
-
-    name: str
-    pixels: ByteArray
-    wrap_u: Wrap = "repeat"
-    wrap_v: Wrap = "repeat"
-    nearest: bool = False
-
-
-@dataclass
-class TextureSlot:
-    """A material's use of `Scene.textures[texture]`.
-
-    `uv_from_uv` is (2, 3) float32: texture coordinate = uv_from_uv @ (u, v, 1).
-    """
-
-    texture: int
-    uv_set: Literal[0, 1] = 0
-    uv_from_uv: FloatArray = field(default_factory=lambda: np.eye(2, 3, dtype=np.float32))
-
-
-@dataclass
-class Material:
-    """glTF's metallic-roughness material.
-
-    `base_color` (4,) float32 linear with opacity; `emissive` (3,) float32 linear radiance in nit,
-    strength included. Textures multiply their factors: base colour and emissive textures are sRGB
-    encoded, the others linear (metallic in B, roughness in G, occlusion in R).
-    """
-
-    name: str
-    base_color: FloatArray = field(default_factory=lambda: np.ones(4, np.float32))
-    metallic: float = 1.0
-    roughness: float = 1.0
-    emissive: FloatArray = field(default_factory=lambda: np.zeros(3, np.float32))
-    normal_scale: float = 1.0
-    occlusion_strength: float = 1.0
-    base_color_texture: TextureSlot | None = None
-    metallic_roughness_texture: TextureSlot | None = None
-    normal_texture: TextureSlot | None = None
-    occlusion_texture: TextureSlot | None = None
-    emissive_texture: TextureSlot | None = None
-    alpha_mode: AlphaMode = "opaque"
-    alpha_cutoff: float = 0.5
-    double_sided: bool = False
-    unlit: bool = False
-
-    @property
-    def emits(self) -> bool:
-        """Whether any radiance leaves the surface by itself."""
-        return bool(self.emissive.max() > 0.0)
 
 
 @dataclass
@@ -129,71 +93,6 @@ class Instance:
     node: int = -1
     skin: int = -1
     weights: FloatArray | None = None
-
-
-@dataclass
-class Light:
-    """A punctual light (KHR_lights_punctual).
-
-    `intensity` is lux for a directional light, candela for the others; `position` and `direction`
-    are (3,) float32, the direction a unit vector pointing away from the light; `range` in m; cone
-    half angles in radians; `source_radius` in m. A `node` of `Scene.motion`'s rig moves it.
-    """
-
-    name: str
-    kind: LightKind
-    color: FloatArray
-    intensity: float
-    position: FloatArray
-    direction: FloatArray
-    range: float = math.inf
-    inner_angle: float = 0.0
-    outer_angle: float = math.pi / 4
-    source_radius: float = 0.0
-    casts_shadow: bool = True
-    node: int = -1
-
-
-@dataclass
-class Camera:
-    """A perspective camera looking down its -z: `fov_y` in radians, `near` and `far` in m.
-
-    `far` None: as far as the scene reaches; `aspect` None: the image's own. A `node` of
-    `Scene.motion`'s rig moves it.
-    """
-
-    name: str
-    world_from_view: FloatArray
-    fov_y: float
-    near: float
-    far: float | None = None
-    aspect: float | None = None
-    node: int = -1
-
-
-@dataclass
-class CameraPath:
-    """A camera's motion: keys at `times` (K,) float64 s, increasing; eyes, targets (K, 3) m."""
-
-    times: npt.NDArray[np.float64]
-    eyes: FloatArray
-    targets: FloatArray
-    fov_y: float
-    near: float
-    loop: bool = False
-
-
-@dataclass
-class Environment:
-    """Light from infinity: `radiance` (H, W, 3) float32 equirectangular times tint and intensity.
-
-    Direction (x, y, z) is at u = 1/2 + atan2(x, -z) / 2π, v = acos(y) / π, v downwards: row 0 is
-    +y, the middle column -z. Without an image the radiance is 1 everywhere.
-    """
-
-    radiance: FloatArray | None
-    tint: FloatArray
-    intensity: float
 
 
 @dataclass
@@ -267,38 +166,3 @@ def unique_name(name: str, taken: set[str]) -> str:
     if name not in taken:
         return name
     return next(f"{name}.{k}" for k in range(2, len(taken) + 3) if f"{name}.{k}" not in taken)
-
-
-FRAMING_FOV_Y = math.radians(39.3)
-"""Of the Cornell box's published camera (35 mm film, 25 mm sensor)."""
-FRAMING_MARGIN = 1.05
-FRAMING_ELEVATION = math.radians(30.0)
-"""How far a camera looks down on a flat scene; on one as high as deep it looks level."""
-FRAMING_NEAR = 1e-3
-"""Near plane of a framing camera as a part of the scene's diagonal."""
-
-
-def framing_camera(low: FloatArray, high: FloatArray, aspect: float) -> Camera:
-    """A camera in front of (+z of) the box low..high that just sees all eight corners.
-
-    glTF assets face +z, so this looks at their front.
-    """
-    size = np.maximum(high - low, 0.0).astype(np.float64)
-    diagonal = float(np.linalg.norm(size)) or 1.0
-    flatness = float(np.clip(1.0 - size[1] / max(size[2], 1e-3 * diagonal), 0.0, 1.0))
-    elevation = FRAMING_ELEVATION * flatness
-    backward = np.array([0.0, math.sin(elevation), math.cos(elevation)])
-    up = np.array([0.0, math.cos(elevation), -math.sin(elevation)])
-    signs = np.array(np.meshgrid([-0.5, 0.5], [-0.5, 0.5], [-0.5, 0.5])).reshape(3, 8).T
-    corners = signs * size * FRAMING_MARGIN
-    tan_y = math.tan(FRAMING_FOV_Y / 2)
-    reach = np.maximum(np.abs(corners[:, 0]) / (tan_y * aspect), np.abs(corners @ up) / tan_y)
-    distance = max(float((corners @ backward + reach).max()), 1e-2 * diagonal)
-    center = (low.astype(np.float64) + high) / 2
-    view_from_world = transforms.look_at(center + distance * backward, center, up)
-    return Camera(
-        name="default",
-        world_from_view=transforms.inverse(view_from_world),
-        fov_y=FRAMING_FOV_Y,
-        near=FRAMING_NEAR * diagonal,
-    )

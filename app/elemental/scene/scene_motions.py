@@ -12,7 +12,7 @@ from elemental.core.errors import InputError
 from elemental.scene.camera_path import slope_at
 from elemental.scene.model import FloatArray
 from elemental.scene.motion import F64, Path, RigBuilder, Tracks
-from elemental.scene.scene_file import MotionKeyTable, MotionTable, TurnTable
+from elemental.scene.tables.motions import MotionKeyTable, MotionTable, TurnTable
 
 TURN_KEYS = 4
 """Keys of a whole turn, a third apart: slerp between them is even and unambiguous."""
