@@ -191,10 +191,17 @@ class Renderer:
         s = self.settings
         exposure = 2.0 ** s["exposure"]
         view = pack_view(
-            camera, self.size, self._meshes.bounds, exposure=exposure, time_s=time_s, frame=frame
+            camera,
+            self.size,
+            self._meshes.bounds,
+            exposure=exposure,
+            time_s=time_s,
+            frame=frame,
+            indirect=_tint(s, "indirect.intensity", "indirect.color"),
         )
         environment = self.scene.environment if s["sky.enabled"] else None
         sky = self._sky.update(g, environment, s["sky.intensity"])
+        ambient = sky.tinted(_tint(s, "ambient_cubemap.intensity", "ambient_cubemap.tint"))
         shadows = update_shadows(
             g, self._shadows, self._meshes, lights, camera=camera, size=self.size
         )
@@ -218,7 +225,7 @@ class Renderer:
             if view_name in STEP_VIEWS:
                 split, block = self._cone_split, self._area_block
                 return step_view(g, view, gb, octree, sky, block, split, view_name)
-            diffuse_gi, broad_gi = self._diffuse(g, view, gb, octree, sky)
+            diffuse_gi, broad_gi = self._diffuse(g, view, gb, octree, ambient)
             if view_name == "diffuse_gi":
                 return diffuse_gi
             if s["gi.specular"] or view_name in SPECULAR_VIEWS:
@@ -227,7 +234,7 @@ class Renderer:
                     view,
                     gb,
                     octree,
-                    sky,
+                    ambient,
                     self._area_block,
                     broad_gi,
                     self._specular,
@@ -246,7 +253,7 @@ class Renderer:
             specular_gi=specular.radiance if specular is not None else None,
         )
         scene_color = draw_translucent(
-            g, view, gb, self._meshes, shadows, sky=sky, diffuse_gi=diffuse_gi
+            g, view, gb, self._meshes, shadows, sky=ambient, diffuse_gi=diffuse_gi
         )
         if view_name == "scene_color":
             return scene_color
@@ -305,6 +312,13 @@ class Renderer:
 def max_pixels(device: Device) -> int:
     """The largest picture: the list of glossy pixels, a word each, is one storage block."""
     return device.storage_limit // 4
+
+
+def _tint(settings: Settings, intensity: str, color: str) -> tuple[float, float, float]:
+    """A colour times an intensity, by their keys."""
+    factor = settings[intensity]
+    red, green, blue = settings[color]
+    return factor * red, factor * green, factor * blue
 
 
 def _shadow_settings(settings: Settings) -> ShadowSettings:

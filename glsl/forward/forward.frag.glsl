@@ -33,9 +33,10 @@ vec3 shade_translucent(Surface s, vec3 n_ws, vec3 p_ws) {
     vec4 diffuse_gi = texelFetch(u_diffuse_gi, ivec2(gl_FragCoord.xy), 0);
     vec3 mirrored = sky_radiance(reflect(-to_eye, n_ws), specular_cone_half_angle(s.specular_power));
     float n_o_v = clamp(dot(n_ws, to_eye), 0.0, 1.0);
-    radiance += diffuse_gi.rgb * s.albedo * s.ambient_occlusion;
-    radiance += mirrored * clamp(diffuse_gi.a, 0.0, 1.0) * s.ambient_occlusion
+    vec3 indirect = diffuse_gi.rgb * s.albedo * s.ambient_occlusion;
+    indirect += mirrored * clamp(diffuse_gi.a, 0.0, 1.0) * s.ambient_occlusion
         * environment_brdf(s.specular_color, s.roughness, n_o_v);
+    radiance += indirect * u_view.indirect;
 #endif
     return radiance;
 }

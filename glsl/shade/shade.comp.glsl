@@ -38,16 +38,17 @@ vec3 shade_surface(GBufferSurface s, vec3 p_ws, ivec2 pixel) {
                                       s.specular_power);
     DirectLight direct = direct_light(point);
     vec3 radiance = direct.diffuse + direct.specular;
+    vec3 indirect = vec3(0.0);
 #if DIFFUSE_GI
-    radiance += texelFetch(u_diffuse_gi, pixel, 0).rgb * s.albedo * s.ambient_occlusion;
+    indirect += texelFetch(u_diffuse_gi, pixel, 0).rgb * s.albedo * s.ambient_occlusion;
 #endif
 #if SPECULAR_GI
     float roughness = roughness_from_specular_power(s.specular_power);
     float n_o_v = clamp(dot(s.normal_ws, to_eye), 0.0, 1.0);
-    radiance += texelFetch(u_specular_gi, pixel, 0).rgb * s.ambient_occlusion
+    indirect += texelFetch(u_specular_gi, pixel, 0).rgb * s.ambient_occlusion
         * environment_brdf(s.specular_color, roughness, n_o_v);
 #endif
-    return radiance;
+    return radiance + indirect * u_view.indirect;
 }
 
 void main() {

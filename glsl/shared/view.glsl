@@ -11,4 +11,5 @@ layout(std140) uniform View {
     float far;         // m
     float time_s;
     uint frame;
+    vec3 indirect;     // multiplies the indirect light that surfaces in view receive
 } u_view;

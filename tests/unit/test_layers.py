@@ -13,7 +13,8 @@ PACKAGE = Path(__file__).resolve().parents[2] / "app" / "elemental"
 LAYERS = (
     {"__init__"},
     {"core"},
-    {"scene", "gpu", "settings"},
+    {"settings"},
+    {"scene", "gpu"},
     {"passes"},
     {"frame"},
     {"session", "report", "picture"},

@@ -38,8 +38,10 @@ def pack_view(
     exposure: float = 1.0,
     time_s: float = 0.0,
     frame: int = 0,
+    indirect: tuple[float, float, float] = (1.0, 1.0, 1.0),
 ) -> Block:
-    """The block View of glsl/shared/view.glsl. size: (width, height) px; exposure: a factor."""
+    """The block View of glsl/shared/view.glsl. size: (width, height) px; exposure: a factor;
+    indirect: factors on the indirect light that surfaces receive."""
     width, height = size
     far = far_plane(camera, bounds)
     view_from_world = transforms.inverse(camera.world_from_view)
@@ -58,4 +60,5 @@ def pack_view(
         far=far,
         time_s=time_s,
         frame=frame,
+        indirect=indirect,
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import math
 from collections.abc import Hashable
 
@@ -66,6 +67,18 @@ class Sky:
         self._params = _params(self._map, tint)
         self.key = (self._builds, tint.tobytes())
         return self
+
+    def tinted(self, factor: tuple[float, float, float]) -> Sky:
+        """This sky as surfaces in view gather it: its radiance times ``factor``.
+
+        It is this frame's, and shares the map; what the voxels gather stays as it is.
+        """
+        if factor == (1.0, 1.0, 1.0):
+            return self
+        other = copy.copy(self)
+        other._params = self._params.copy()
+        other._params["tint"] *= factor
+        return other
 
     def release(self) -> None:
         """Free the map."""
