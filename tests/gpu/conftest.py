@@ -8,7 +8,12 @@ from typing import Any
 
 import pytest
 
+from elemental.frame import Renderer
 from elemental.gpu.device import Device
+from elemental.passes.scene_gpu import GpuScene
+from elemental.scene.model import Scene
+from gpu.moving import SETTINGS as MOVING
+from gpu.moving import SIZE
 from gpu.rig import MakeRig, Rig
 from gpu.sources import Sources
 
@@ -31,3 +36,31 @@ def rig(device: Device) -> Iterator[MakeRig]:
     yield make
     for item in made:
         item.release()
+
+
+@pytest.fixture
+def renderers(device: Device) -> Iterator[Any]:
+    """Maker of renderers that are released after the test."""
+    made: list[Renderer] = []
+
+    def make(world: Scene, **settings: Any) -> Renderer:
+        made.append(Renderer(device, world, MOVING.replace(settings), SIZE))
+        return made[-1]
+
+    yield make
+    for renderer in made:
+        renderer.release()
+
+
+@pytest.fixture
+def on_device(device: Device) -> Iterator[Any]:
+    """Maker of GPU scenes that are released after the test."""
+    made: list[GpuScene] = []
+
+    def make(world: Scene) -> GpuScene:
+        made.append(GpuScene(device, world))
+        return made[-1]
+
+    yield make
+    for gpu in made:
+        gpu.release()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter, deque
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +19,7 @@ from elemental.gpu.formats import Format
 from elemental.gpu.graph import Graph
 from elemental.gpu.headless import adopt, create
 from elemental.gpu.heap import keep_freed_memory
+from elemental.gpu.info import DeviceInfo
 from elemental.gpu.library import ShaderLibrary
 from elemental.gpu.messages import GlError, Messages
 from elemental.gpu.params import ParamRing
@@ -39,16 +39,6 @@ class GpuMemoryError(MemoryError):
     """The driver, or the device's budget, has no memory for a resource."""
 
 
-@dataclass(frozen=True, slots=True)
-class DeviceInfo:
-    """What the driver says about itself."""
-
-    renderer: str
-    version: str
-    vendor: str
-    software: bool
-
-
 class Device:
     """A GL context with everything that is made in it."""
 
@@ -60,11 +50,8 @@ class Device:
         self.log = Messages(self.gl)
         self.memory_budget: int | None = None
         """Bytes that may be allocated; None: as many as the driver gives."""
-        info = ctx.info
-        renderer = str(info["GL_RENDERER"])
-        software = any(word in renderer.lower() for word in ("llvmpipe", "softpipe", "swrast"))
-        self.info = DeviceInfo(renderer, str(info["GL_VERSION"]), str(info["GL_VENDOR"]), software)
-        if software:
+        self.info = DeviceInfo.of(ctx)
+        if self.info.software:
             keep_freed_memory()
         self.storage_limit = self.gl.integer(c.MAX_SHADER_STORAGE_BLOCK_SIZE)
         self.max_anisotropy = float(ctx.max_anisotropy)
