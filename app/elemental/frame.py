@@ -42,6 +42,7 @@ from elemental.scene.area_lights import AreaLight, area_lights, followed
 from elemental.scene.deform import posed
 from elemental.scene.evaluate import Pose, evaluate
 from elemental.scene.model import Camera, Light, Material, Region, Scene
+from elemental.scene.volumes import blend
 from elemental.settings import Settings
 
 MIB = 1 << 20
@@ -188,7 +189,7 @@ class Renderer:
         voxels: VoxelLighting | None,
     ) -> TextureHandle:
         """The passes of a frame. What the asked-for image does not need, the graph leaves out."""
-        s = self.settings
+        s = blend(self.settings, self.scene.volumes, camera.world_from_view[:3, 3])
         exposure = 2.0 ** s["exposure"]
         view = pack_view(
             camera,

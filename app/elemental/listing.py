@@ -31,7 +31,13 @@ def _columns(rows: Sequence[Sequence[str]]) -> list[str]:
 def _settings() -> list[str]:
     return _columns(
         [
-            (s.key, s.value_text(s.default) or '""', s.range_text(), s.help)
+            (
+                s.key,
+                s.value_text(s.default) or '""',
+                s.range_text(),
+                "volume" if s.volume else "",
+                s.help,
+            )
             for s in SETTINGS.values()
         ]
     )

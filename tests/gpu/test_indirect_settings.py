@@ -1,9 +1,10 @@
 # PP-11
-"""The factors on indirect and on the environment's light: linear, and on surfaces alone."""
+"""Factors on indirect and on the environment's light: linear, on surfaces alone, by volumes."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ import pytest
 from elemental.frame import Renderer
 from elemental.gpu.device import Device
 from elemental.scene.model import Environment
+from elemental.scene.volumes import Volume
 from elemental.settings import Settings
 from gpu.rig import IDENTITY, at, camera, material, mesh, scene, sun, vector
 from shapes import box, quad
@@ -84,3 +86,17 @@ def test_the_environment_lights_surfaces_by_its_factor_and_shows_unchanged(
     assert (unit - dark)[..., :3].max() > 0.1
     middle = (unit + dark) / 2
     assert (np.abs(halved - middle)[..., :3] <= 4 * HALF_STEP * (unit[..., :3] + 1e-3)).all()
+
+
+def test_a_volume_overrides_what_its_frame_shows(renderer: Renderer) -> None:
+    direct = picture(renderer, indirect__intensity=0.0)
+    doubled = picture(renderer, indirect__intensity=2.0)
+    plain = picture(renderer, indirect__intensity=1.0)
+    around = Volume("v", center=(0.0, 1.2, 4.0), overrides={"indirect.intensity": 2.0})
+    for volumes, expected in (
+        ([around], doubled),
+        ([replace(around, center=(0.0, 0.0, 50.0))], plain),
+        ([around, replace(around, overrides={"indirect.intensity": 0.0}, priority=1.0)], direct),
+    ):
+        renderer.scene.volumes = volumes
+        assert np.array_equal(picture(renderer), expected)

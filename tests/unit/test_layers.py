@@ -34,6 +34,7 @@ OWNERS = {
     "imgui_bundle": {"ui"},
     "pyrr": {"core"},
     "pydantic": {"scene"},
+    "tomlkit": {"scene"},
     "PIL": {"core"},
     "OpenEXR": {"core"},
     "DracoPy": {"scene"},

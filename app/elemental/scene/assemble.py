@@ -33,6 +33,7 @@ from elemental.scene.scene_motions import Movers
 from elemental.scene.tables.cameras import CameraTable, PathTable
 from elemental.scene.tables.lights import EnvironmentTable, LightTable
 from elemental.scene.tables.models import ModelTable
+from elemental.scene.volume_file import volumes_of
 
 TEXTURE_SLOTS = (
     "base_color_texture",
@@ -69,6 +70,7 @@ def load_scene_file(path: Path, animation: str | None = None) -> Scene:
     scene.regions = [
         Region(_vec(region.min), _vec(region.max), region.level_offset) for region in file.regions
     ]
+    scene.volumes = volumes_of(file.volumes, path)
     return scene
 
 

@@ -20,6 +20,7 @@ from elemental.scene.cameras import Camera, CameraPath, framing_camera
 from elemental.scene.lights import Environment, Light, LightKind
 from elemental.scene.materials import AlphaMode, Material, Texture, TextureSlot, Wrap
 from elemental.scene.motion import Influences, Morphs, Motion
+from elemental.scene.volumes import Volume
 
 __all__ = [
     "AlphaMode",
@@ -127,6 +128,7 @@ class Scene:
     notes: list[str] = field(default_factory=list)
     camera_path: CameraPath | None = None
     regions: list[Region] = field(default_factory=list)
+    volumes: list[Volume] = field(default_factory=list)
     motion: Motion | None = None
     extent: tuple[FloatArray, FloatArray] | None = None
     animations: list[str] = field(default_factory=list)

@@ -19,6 +19,7 @@ from elemental.scene.tables.lights import EnvironmentTable, LightTable
 from elemental.scene.tables.models import ModelTable
 from elemental.scene.tables.motions import MotionTable
 from elemental.scene.tables.regions import RegionTable
+from elemental.scene.tables.volumes import VolumeTable
 
 
 class SceneFile(Table):
@@ -33,6 +34,7 @@ class SceneFile(Table):
     cameras: list[CameraTable] = []
     camera_path: PathTable | None = None
     regions: list[RegionTable] = []
+    volumes: list[VolumeTable] = []
     settings: dict[str, Any] = {}
 
     @model_validator(mode="after")
@@ -51,7 +53,16 @@ def read_scene_file(path: Path) -> SceneFile:
     line for each wrong, missing or unknown key.
     """
     try:
-        tables = tomllib.loads(read_file(path).decode("utf-8"))
+        text = read_file(path).decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise InputError(path, "TOML", f"is broken ({error})") from error
+    return parse_scene_file(text, path)
+
+
+def parse_scene_file(text: str, path: Path) -> SceneFile:
+    """Check a scene file's text; raises as ``read_scene_file``."""
+    try:
+        tables = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
         raise InputError(path, "TOML", f"is broken ({error})") from error
     try:

@@ -16,6 +16,9 @@ SETTINGS: Mapping[str, Setting] = MappingProxyType(
     {setting.key: setting for setting in (*TABLE, *POST_TABLE)}
 )
 
+Mix = tuple[tuple[Any, float], ...]
+"""(value, share) of what can't be mixed into one value; the last has the highest priority."""
+
 
 class Settings(Mapping[str, Any]):
     """An immutable, complete and checked assignment of every setting: ``s["gi.resolution"]``."""
@@ -26,6 +29,7 @@ class Settings(Mapping[str, Any]):
         for key, value in (values or {}).items():
             assigned[key] = _checked("settings", key, value)
         self._values = assigned
+        self._mixes: Mapping[str, Mix] = {}
 
     def __getitem__(self, key: str) -> Any:
         return self._values[key]
@@ -40,7 +44,11 @@ class Settings(Mapping[str, Any]):
         return hash(tuple(self._values.items()))
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Settings) and self._values == other._values
+        return (
+            isinstance(other, Settings)
+            and self._values == other._values
+            and self._mixes == other._mixes
+        )
 
     def __repr__(self) -> str:
         return f"Settings({self.changed()!r})"
@@ -57,6 +65,22 @@ class Settings(Mapping[str, Any]):
         """
         flat = {key: _checked(file, key, value) for key, value in _flatten(values)}
         return Settings({**self._values, **flat})
+
+    def blended(self, values: Mapping[str, Any], mixes: Mapping[str, Mix]) -> Settings:
+        """These settings with ``values`` and the heaviest parts of ``mixes`` over them, unchecked.
+
+        Made once a frame from values that were checked: see scene/volumes.py.
+        """
+        made = object.__new__(Settings)
+        made._values = {**self._values, **values}
+        for key, mix in mixes.items():
+            made._values[key] = max(reversed(mix), key=_share)[0]
+        made._mixes = mixes
+        return made
+
+    def mix(self, key: str) -> Mix:
+        """What stands for a switch, a choice or a text in a blend of volumes: shares sum to 1."""
+        return self._mixes.get(key) or ((self._values[key], 1.0),)
 
     @classmethod
     def parse(cls, assignments: Iterable[str], base: Settings | None = None) -> Settings:
@@ -76,6 +100,17 @@ class Settings(Mapping[str, Any]):
             except ValueError as error:
                 raise InputError("--set", key, str(error)) from None
         return (base or cls()).replace(values, "--set")
+
+
+def check_override(file: str, key: str, value: Any) -> Any:
+    """The value of a setting that volumes may override. Raises InputError(file, key, reason)."""
+    if not _find(file, key).volume:
+        raise InputError(file, key, "is not a setting that volumes may override")
+    return _checked(file, key, value)
+
+
+def _share(part: tuple[Any, float]) -> float:
+    return part[1]
 
 
 def _flatten(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
