@@ -21,6 +21,8 @@ from elemental.settings import Settings
 from gpu.rig import IDENTITY, at, camera, material, read, scene, vector
 from gpu.voxel.scenes import colored, glowing, jumble, part, turned
 from gpu.voxel.stage import BUDGET, CAMERA, Lit, MakeStage
+from gpu.voxel.walk import Walk, world
+from gpu.voxel.walk import show as step
 from shapes import box, quad
 
 Array = npt.NDArray[Any]
@@ -141,6 +143,28 @@ def test_bars_are_as_long_as_the_pools_are_full(
         in_use = (np.abs(bar - bar[0]).max(axis=1) < 3).sum()
         assert abs(in_use - min(fill, 1.0) * width) <= 1, name
         assert (bar[0].tolist() == [255, 0, 0]) == (fill > 1.0), name
+
+
+def test_bars_stay_as_long_where_light_alone_changes(device: Device) -> None:
+    """In a scene with moving parts: their fragments are still there."""
+    lit = Lit(device, world(6))
+    walk = Walk(lit.scene, np.random.default_rng(3))
+    voxels = lit.lighting(64)
+    step(device, lit, voxels, walk.pose())
+
+    def bars() -> Array:
+        g = device.begin_frame()
+        view = pack_view(CAMERA, (400, 50), lit.gpu.bounds)
+        return read(g, voxel_view(g, view, voxels.octree, (400, 50), "pools", 0, "all"))
+
+    before = bars()
+    lit.scene.lights[0] = replace(lit.scene.lights[0], intensity=2.0)
+    names = step(device, lit, voxels, walk.pose())
+    assert "light voxels" in names
+    assert not any(name.startswith("voxelize") for name in names)
+    np.testing.assert_array_equal(bars(), before)
+    for item in (voxels, lit):
+        item.release()
 
 
 def mirror_before_a_wall() -> Scene:

@@ -200,23 +200,33 @@ class VoxelLighting:
 
     def _counted(self, raw: bytes) -> None:
         self.counts = Counts.from_state(raw)
-        if self.counts.overflowed and self._wanted() != self.octree.capacity:
+        if self._larger() is not None:
             self.invalidate("geometry")
 
-    def _wanted(self) -> Capacity:
-        return self._room_for(self.counts)
+    def _larger(self) -> Capacity | None:
+        """Pools for what was counted, where the last build had to drop some of it and the budget
+        allows for so much more that they are worth a whole build."""
+        if not self.counts.overflowed:
+            return None
+        octree, wanted = self.octree, self._room_for(self.counts)
+        one_leaf_level = octree.grid.one_leaf_level
+        if sizing.is_worth_it(wanted, octree.capacity, self.counts, one_leaf_level, self._moves):
+            return wanted
+        return None
 
     def _room_for(self, counts: Counts) -> Capacity:
-        wanted = sizing.with_slack(counts) if self._moves else counts
-        return sizing.capacity_for(wanted, self.budget_bytes, keeps_slots=self._moves)
+        if self._moves:
+            return sizing.capacity_in_motion(counts, self.budget_bytes)
+        return sizing.capacity_for(counts, self.budget_bytes)
 
     def _grow(self) -> bool:
-        """Larger pools where the last build had to drop something and the budget allows."""
-        if not self.counts.overflowed or self._wanted() == self.octree.capacity:
+        """Take larger pools where they are worth it."""
+        larger = self._larger()
+        if larger is None:
             return False
         octree = self.octree
         self.release()
-        self._allocate(octree.grid, self._wanted(), octree.max_emission)
+        self._allocate(octree.grid, larger, octree.max_emission)
         self._built_version = self._lit_by = None
         return True
 

@@ -18,13 +18,18 @@ from elemental.scene.area_lights import AreaLight
 from elemental.scene.model import Scene
 
 UNBOUNDED = 0xFFFFFFFF
-FRAGMENTS_MAX = 65535 * 128
-"""Work groups a dimension times FRAGMENT_GROUP: what one indirect dispatch reaches."""
+FRAGMENTS_MAX = (1 << 27) // 16
+"""VoxelFragments, 16 bytes each, in the storage block that every driver allows: 2^27 bytes
+[GL 4.5, table 23.64]. Dispatches over them are folded and reach further."""
 FRAGMENT_SLACK = 1.1
 """Over the expected count of fragments, whose standard deviation is far smaller."""
-MOTION_SLACK = 1.3
+MOTION_SLACKS = (1.3, 1.1)
 """Room for what moves: a turned body covers more voxels than one along the axes [inferred: a cube
-up to sqrt(3) times as many, and most of a scene stands still]."""
+up to sqrt(3) times as many, and most of a scene stands still]. Where the budget can't hold the
+first, the second: leaves that are there come before room for some that may come."""
+GAIN_MIN = 1 / 16
+"""Least share of the bricks asked for that new pools must add where they still can't hold all
+[inferred: more than what moves from frame to frame, less than one sees]."""
 BRICKS_MAX = 1 << 20
 """Bricks that the largest atlas holds, rounded down."""
 
@@ -102,24 +107,28 @@ def count_again(octree: Survey, grid: Grid, fragments: Buffer) -> Counts:
     return counts
 
 
-def with_slack(counts: Counts) -> Counts:
-    """Counts as of a scene that MOTION_SLACK times as much may have to hold, as things move."""
+def with_slack(counts: Counts, slack: float) -> Counts:
+    """Counts as if the scene asked for ``slack`` times as much. What was dropped was asked for."""
 
     def more(count: int) -> int:
-        return int(count * MOTION_SLACK) + 1
+        return int(count * slack) + 1
 
     return replace(
         counts,
-        fragments=more(counts.fragments),
-        tiles=more(counts.tiles),
-        bricks=more(counts.bricks),
+        fragments=more(counts.fragments + counts.fragments_dropped),
+        fragments_dropped=0,
+        tiles=more(counts.tiles + counts.tiles_dropped),
+        tiles_dropped=0,
+        bricks=more(counts.bricks + counts.bricks_dropped),
+        bricks_dropped=0,
         leaves_asked=more(counts.leaves_asked),
         interior_asked=more(counts.interior_asked),
     )
 
 
 def capacity_for(counts: Counts, budget_bytes: int, keeps_slots: bool = False) -> Capacity:
-    """Pools for these counts; fewer leaves where the budget or the atlas can't hold them all."""
+    """Pools for these counts; where the budget or the atlas can't hold them all, fewer leaves,
+    and where it can't hold the others either, fewer of those."""
     wanted = Capacity(
         fragments=min(max(counts.fragments + counts.fragments_dropped, 1), FRAGMENTS_MAX),
         tiles=max(counts.tiles + counts.tiles_dropped, 1),
@@ -127,9 +136,64 @@ def capacity_for(counts: Counts, budget_bytes: int, keeps_slots: bool = False) -
         leaves=max(counts.leaves_asked, 1),
         interior=max(counts.interior_asked, 1),
     )
-    excess = max(0, wanted.nbytes(keeps_slots) - budget_bytes)
-    one, none = (replace(wanted, bricks=n, leaves=n).nbytes(keeps_slots) for n in (1, 0))
-    a_leaf = one - none
-    cut = min(max(-(-excess // a_leaf), wanted.bricks - BRICKS_MAX), wanted.leaves - 1)
-    cut = max(cut, 0)
-    return replace(wanted, bricks=wanted.bricks - cut, leaves=wanted.leaves - cut)
+
+    def excess(capacity: Capacity, **one: int) -> int:
+        """How many of what `one` is a single one of have to go."""
+        alone = replace(capacity, **one).nbytes(keeps_slots)
+        none = replace(capacity, **dict.fromkeys(one, 0)).nbytes(keeps_slots)
+        return max(0, -(-(capacity.nbytes(keeps_slots) - budget_bytes) // (alone - none)))
+
+    cut = max(excess(wanted, bricks=1, leaves=1), wanted.bricks - BRICKS_MAX)
+    cut = max(min(cut, wanted.leaves - 1, wanted.bricks - 1), 0)
+    wanted = replace(wanted, bricks=wanted.bricks - cut, leaves=wanted.leaves - cut)
+    cut = max(min(excess(wanted, bricks=1, interior=1), wanted.interior - 1, wanted.bricks - 1), 0)
+    return replace(wanted, bricks=wanted.bricks - cut, interior=wanted.interior - cut)
+
+
+def capacity_in_motion(counts: Counts, budget_bytes: int) -> Capacity:
+    """Pools for a scene that moves and asked for this much: with room for more."""
+    for slack in MOTION_SLACKS:
+        wanted = capacity_for(with_slack(counts, slack), 1 << 62, keeps_slots=True)
+        if wanted.nbytes(keeps_slots=True) <= budget_bytes:
+            return wanted
+    return capacity_for(with_slack(counts, MOTION_SLACKS[-1]), budget_bytes, keeps_slots=True)
+
+
+def bricks_kept(capacity: Capacity, counts: Counts, one_leaf_level: bool, slots: bool) -> int:
+    """How many of the bricks that were asked for pools of a capacity hold, by the rules of
+    `scan_groups.comp` but for tiles; ``slots``: bricks keep theirs."""
+    every, leaves = counts.bricks + counts.bricks_dropped, counts.leaves_asked
+    above_leaves, above_finest = every - leaves, counts.interior_asked
+    finest_room = max(capacity.bricks - capacity.interior, 0)
+    kept = min(every, capacity.bricks, above_leaves + capacity.leaves)
+    kept = min(kept, min(above_finest, capacity.interior) + finest_room)
+    if above_finest > capacity.interior:
+        kept = min(kept, capacity.interior)
+    if slots:
+        coarse, mixed, finest, _ = capacity.slots(one_leaf_level)
+        kept = min(kept, above_finest + finest)
+        if above_finest - above_leaves > mixed:
+            kept = min(kept, above_leaves + mixed)
+        if above_leaves > coarse:
+            kept = min(kept, coarse)
+    return kept
+
+
+def is_worth_it(
+    candidate: Capacity, held: Capacity, counts: Counts, one_leaf_level: bool, slots: bool
+) -> bool:
+    """Whether what was asked for finds so much more room in other pools that they should be made.
+
+    They cost a whole build. As things move in pools that a budget limits, each frame asks for
+    others that would hold a few bricks more or fewer: those wait until they are GAIN_MIN more.
+    """
+    fragments = counts.fragments + counts.fragments_dropped
+    if held.fragments < min(fragments, candidate.fragments):
+        return True
+    tiles = counts.tiles + counts.tiles_dropped
+    if held.tiles < min(tiles, candidate.tiles):
+        return True
+    now = bricks_kept(held, counts, one_leaf_level, slots)
+    then = bricks_kept(candidate, counts, one_leaf_level, slots)
+    every = counts.bricks + counts.bricks_dropped
+    return then > now and (then == every or then - now >= every * GAIN_MIN)

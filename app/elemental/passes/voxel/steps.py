@@ -24,6 +24,7 @@ from elemental.passes.voxel.kept import BEGIN, Kept
 from elemental.passes.voxel.octree import Octree
 from elemental.passes.voxel.voxelize import append_fragments
 
+BEGIN_LISTS = Compute("voxel/begin_step.comp.glsl", defines={"LISTS_ONLY": 1})
 QUEUE = Compute("voxel/queue.comp.glsl")
 MARK_MOVING = Compute("voxel/mark.comp.glsl", defines={"MOVING": 1})
 RELIGHT = Compute("voxel/relight.comp.glsl")
@@ -73,7 +74,7 @@ def step(
 
 def refresh(g: Graph, octree: Octree, kept: Kept, shadows: ShadowMaps, blocks: range) -> None:
     """List the leaf voxels of some blocks, and what depends on them."""
-    g.compute(BEGIN, writes={"State": octree.state}, params=octree.params, groups=1)
+    g.compute(BEGIN_LISTS, writes={"State": octree.state}, params=octree.params, groups=1)
     g.clear_buffer(kept.dirty)
     _relight(g, octree, kept, shadows, (), blocks)
     _spread_dirty(g, octree, kept)
@@ -221,7 +222,7 @@ def list_dirty(g: Graph, octree: Octree, kept: Kept, everything: bool) -> None:
 
 def list_everything(g: Graph, octree: Octree, kept: Kept) -> None:
     """List all voxels and bricks of the last step: for a change of light."""
-    g.compute(BEGIN, writes={"State": octree.state}, params=octree.params, groups=1)
+    g.compute(BEGIN_LISTS, writes={"State": octree.state}, params=octree.params, groups=1)
     list_dirty(g, octree, kept, everything=True)
 
 
