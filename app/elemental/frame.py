@@ -25,6 +25,7 @@ from elemental.passes.cone_trace.specular import SpecularCounters, trace_specula
 from elemental.passes.cone_trace.steps import STEP_VIEWS, step_view
 from elemental.passes.forward import draw_translucent
 from elemental.passes.gbuffer import GBuffer, draw_gbuffer
+from elemental.passes.light_cells import cull_to_view
 from elemental.passes.post.fxaa import fxaa
 from elemental.passes.post.tonemap import tonemap
 from elemental.passes.scene_gpu import GpuScene
@@ -219,8 +220,9 @@ class Renderer:
         gb = draw_gbuffer(g, view, self._meshes, self.size)
         if view_name in CHANNELS:
             return surface_view(g, view, gb, view_name)
+        cells = cull_to_view(g, view, shadows, camera, self.size)
         if view_name in LIGHT_VIEWS:
-            return light_view(g, view, gb, shadows, view_name)
+            return light_view(g, view, gb, shadows, view_name, cells)
         diffuse_gi = specular = None
         if octree is not None:
             if view_name in STEP_VIEWS:
@@ -249,6 +251,7 @@ class Renderer:
             view,
             gb,
             shadows,
+            cells=cells,
             sky=sky if environment is not None else None,
             diffuse_gi=diffuse_gi,
             specular_gi=specular.radiance if specular is not None else None,
@@ -327,4 +330,6 @@ def _shadow_settings(settings: Settings) -> ShadowSettings:
         resolution=settings["shadow.resolution"],
         cascades=settings["shadow.cascades"],
         reach=settings["shadow.distance"],
+        culling=settings["lights.culling"],
+        cutoff=settings["lights.cutoff"] / 2.0 ** settings["exposure"],
     )

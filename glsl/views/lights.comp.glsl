@@ -20,12 +20,12 @@ layout(rgba16f) writeonly uniform image2D o_image;
 vec3 visibility(ShadingPoint point) {
     vec3 arriving = vec3(0.0);
     vec3 unshadowed = vec3(0.0);
-    for (uint i = 0u; i < uint(lights.length()); ++i) {
-        LightSample s = sample_light(lights[i], point.p_ws);
+    for (LightWalk walk = first_light(point.p_ws); walk.light < light_count(); next_light(walk)) {
+        LightSample s = sample_light(lights[walk.light], point.p_ws);
         vec3 irradiance = s.irradiance * max(dot(point.n_ws, s.to_light), 0.0);
         if (max(irradiance.r, max(irradiance.g, irradiance.b)) <= 0.0) continue;
         unshadowed += irradiance;
-        arriving += irradiance * light_visibility_in_view(i, point.p_ws, point.n_ws);
+        arriving += irradiance * light_visibility_in_view(walk.light, point.p_ws, point.n_ws);
     }
     return mix(arriving / max(unshadowed, vec3(1e-30)), vec3(1.0), equal(unshadowed, vec3(0.0)));
 }

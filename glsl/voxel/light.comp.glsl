@@ -5,6 +5,7 @@
 #include "lib/dispatch.glsl"
 #include "lib/ambient_cube.glsl"
 #include "lib/packing.glsl"
+#include "lib/light_cells.glsl"
 #include "lib/lights.glsl"
 #include "lib/math.glsl"
 #include "lib/shadow.glsl"
@@ -34,12 +35,12 @@ const float NEAREST_LIGHT_VOXELS = 0.5;
 
 vec3 direct_irradiance(vec3 p_ws, vec3 normal, float certainty, float spacing) {
     vec3 sum = vec3(0.0);
-    for (int i = 0; i < lights.length(); ++i) {
-        LightSample light = sample_light(lights[i], p_ws);
+    for (LightWalk walk = first_light(p_ws); walk.light < light_count(); next_light(walk)) {
+        LightSample light = sample_light(lights[walk.light], p_ws);
         float cosine = mix(MEAN_COSINE, max(dot(normal, light.to_light), 0.0), certainty);
         if (cosine * max(light.irradiance.r, max(light.irradiance.g, light.irradiance.b)) <= 0.0) continue;
-        float visibility = light_visibility(uint(i), p_ws, normal, spacing * SHADOW_OFFSET_VOXELS);
-        float nearness = lights[i].kind == LIGHT_DIRECTIONAL
+        float visibility = light_visibility(walk.light, p_ws, normal, spacing * SHADOW_OFFSET_VOXELS);
+        float nearness = lights[walk.light].kind == LIGHT_DIRECTIONAL
                              ? 1.0 : min(light.distance_m / (NEAREST_LIGHT_VOXELS * spacing), 1.0);
         sum += light.irradiance * (cosine * visibility * nearness * nearness);
     }

@@ -6,7 +6,7 @@ import numpy as np
 
 from elemental.core.layout import Block
 from elemental.gpu.device import Device
-from elemental.passes.shadow_plan import pack_lights
+from elemental.passes.light_pack import pack_lights
 from elemental.scene.model import Light
 from glsl.harness import run_glsl
 

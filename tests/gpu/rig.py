@@ -17,6 +17,7 @@ from elemental.gpu.refs import TextureHandle
 from elemental.passes.camera_view import pack_view
 from elemental.passes.forward import draw_translucent
 from elemental.passes.gbuffer import GBuffer, draw_gbuffer
+from elemental.passes.light_cells import cull_to_view
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.shade import shade
 from elemental.passes.shadow import ShadowMaps, update_shadows
@@ -135,8 +136,9 @@ class Rig:
     def scene_color(self) -> Array:
         """(H, W, 4) float32 radiance; alpha 1 where a surface is."""
         g, view, gb = self.begin()
-        shade(g, view, gb, self.shadows, sky=self.sky)
-        lit = draw_translucent(g, view, gb, self.gpu, self.shadows, sky=self.sky)
+        cells = cull_to_view(g, view, self.shadows, self.camera, self.size)
+        shade(g, view, gb, self.shadows, cells=cells, sky=self.sky)
+        lit = draw_translucent(g, view, gb, self.gpu, self.shadows, sky=self.sky, cells=cells)
         return read(g, lit).astype(np.float32)
 
     def visibility(self) -> Array:

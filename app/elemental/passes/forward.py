@@ -12,13 +12,18 @@ from elemental.gpu.refs import Ref, TextureHandle
 from elemental.gpu.shaders import Raster
 from elemental.gpu.state import RasterState
 from elemental.passes.gbuffer import VERT, VIEWER, GBuffer
+from elemental.passes.light_cells import ALL_LIGHTS, NO_CELLS, VIEW_CELLS, LightCells
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.scene_pack import BLEND
 from elemental.passes.shadow import ShadowMaps
 from elemental.passes.sky import Sky
 
 FRAG = "forward/forward.frag.glsl"
-VARIANTS = {gi: Raster(VERT, FRAG, defines={"GI": gi}) for gi in (0, 1)}
+VARIANTS = {
+    (gi, cells): Raster(VERT, FRAG, defines={"GI": gi, "LIGHT_CELLS": cells})
+    for gi in (0, 1)
+    for cells in (ALL_LIGHTS, VIEW_CELLS)
+}
 STATE = RasterState(cull="back", depth_test="lequal", depth_write=False, blend="premultiplied")
 
 
@@ -30,6 +35,7 @@ def draw_translucent(
     shadows: ShadowMaps,
     *,
     sky: Sky,
+    cells: LightCells = NO_CELLS,
     diffuse_gi: TextureHandle | None = None,
 ) -> TextureHandle:
     """Blend the scene's translucent instances onto `gb.scene_color`, the farthest first.
@@ -39,7 +45,7 @@ def draw_translucent(
     if not scene.batches(BLEND):
         return gb.scene_color
     reads: dict[str, Ref] = {"Instances": scene.instances, "Materials": scene.materials}
-    reads |= {**shadows.reads(), **sky.reads()}
+    reads |= {**shadows.reads(), **cells.reads(), **sky.reads()}
     if diffuse_gi is not None:
         reads["u_diffuse_gi"] = diffuse_gi
 
@@ -47,11 +53,11 @@ def draw_translucent(
         scene.draw(enc, scene.back_to_front(view["eye_ws"]), seen_by=VIEWER)
 
     g.raster(
-        VARIANTS[int(diffuse_gi is not None)],
+        VARIANTS[int(diffuse_gi is not None), cells.kind],
         color=gb.scene_color,
         depth=gb.depth,
         reads=reads,
-        params={"View": view, **shadows.params(), **sky.params()},
+        params={"View": view, **shadows.params(), **cells.params(), **sky.params()},
         state=STATE,
         draw=draw,
     )

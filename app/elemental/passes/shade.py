@@ -7,17 +7,20 @@ from elemental.gpu.graph import Graph
 from elemental.gpu.refs import Ref, TextureHandle
 from elemental.gpu.shaders import Compute
 from elemental.passes.gbuffer import GBuffer
+from elemental.passes.light_cells import ALL_LIGHTS, NO_CELLS, VIEW_CELLS, LightCells
 from elemental.passes.shadow import ShadowMaps
 from elemental.passes.sky import Sky
 
 SHADER = "shade/shade.comp.glsl"
 VARIANTS = {
-    (sky, diffuse, specular): Compute(
-        SHADER, defines={"SKY": sky, "DIFFUSE_GI": diffuse, "SPECULAR_GI": specular}
+    (sky, diffuse, specular, cells): Compute(
+        SHADER,
+        {"SKY": sky, "DIFFUSE_GI": diffuse, "SPECULAR_GI": specular, "LIGHT_CELLS": cells},
     )
     for sky in (0, 1)
     for diffuse in (0, 1)
     for specular in (0, 1)
+    for cells in (ALL_LIGHTS, VIEW_CELLS)
 }
 
 
@@ -27,6 +30,7 @@ def shade(
     gb: GBuffer,
     shadows: ShadowMaps,
     *,
+    cells: LightCells = NO_CELLS,
     sky: Sky | None = None,
     diffuse_gi: TextureHandle | None = None,
     specular_gi: TextureHandle | None = None,
@@ -34,10 +38,11 @@ def shade(
     """Scene-referred radiance, (H, W) RGBA16F: `gb.scene_color` with light added in place.
 
     diffuse_gi: irradiance / pi; specular_gi: radiance along the mirrored eye ray; without them
-    there is no indirect light. sky: drawn behind the scene, black without it.
+    there is no indirect light. cells: of `cull_to_view`. sky: drawn behind the scene, black
+    without it.
     """
-    reads: dict[str, Ref] = {**gb.reads(), **shadows.reads()}
-    params = {"View": view, **shadows.params()}
+    reads: dict[str, Ref] = {**gb.reads(), **shadows.reads(), **cells.reads()}
+    params = {"View": view, **shadows.params(), **cells.params()}
     if sky is not None:
         reads |= sky.reads()
         params |= sky.params()
@@ -47,7 +52,7 @@ def shade(
         reads["u_specular_gi"] = specular_gi
     given = (int(sky is not None), int(diffuse_gi is not None), int(specular_gi is not None))
     g.compute(
-        VARIANTS[given],
+        VARIANTS[*given, cells.kind],
         reads=reads,
         writes={"u_scene_color": gb.scene_color},
         params=params,

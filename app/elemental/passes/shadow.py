@@ -40,7 +40,8 @@ class ShadowMaps:
     """The maps on the device, with the buffers Lights and ShadowViews that go with them.
 
     `light_key` differs when anything differs that the light on a voxel depends on: a light or the
-    geometry, not the camera. `lamp_key` differs when a light does.
+    geometry, not the camera. `lamp_key` differs when a light does. `culled`: whether there are so
+    many lights that passes/light_cells.py sorts them, in `light_words` words of 32.
     """
 
     def __init__(self, device: Device, settings: ShadowSettings) -> None:
@@ -48,6 +49,8 @@ class ShadowMaps:
         self.settings = settings
         self.light_key: Hashable = None
         self.lamp_key: Hashable = None
+        self.culled = False
+        self.light_words = 1
         self._maps: Texture | None = None
         self._buffers: dict[str, Buffer] = {}
         self._uploaded: dict[str, bytes] = {}
@@ -60,11 +63,17 @@ class ShadowMaps:
     def reads(self) -> dict[str, Ref]:
         """What a shader that includes lib/shadow.glsl reads; valid after `update_shadows`."""
         assert self._maps is not None, "update_shadows comes first"
-        return {**self._buffers, "u_shadow_maps": Sampled(self._maps, compare=True)}
+        buffers = {name: self._buffers[name] for name in ("Lights", "ShadowViews")}
+        return {**buffers, "u_shadow_maps": Sampled(self._maps, compare=True)}
 
     def params(self) -> dict[str, Block]:
         """The uniform blocks of lib/shadow.glsl: none."""
         return {}
+
+    @property
+    def light_bounds(self) -> Buffer:
+        """The storage block LightBounds of passes/light_cells.py."""
+        return self._buffers["LightBounds"]
 
     def release(self) -> None:
         """Free the maps and the buffers."""
@@ -81,7 +90,9 @@ class ShadowMaps:
         """Upload a plan. Returns the numbers of the views whose map has to be drawn anew."""
         self._allocate(plan.layers, bool(scene.dynamic.any() and not scene.dynamic.all()))
         self._upload("Lights", plan.lights)
+        self._upload("LightBounds", plan.bounds)
         self._upload("ShadowViews", plan.views)
+        self.culled, self.light_words = plan.culled, -(-len(plan.lights) // 32)
         light_fields = [name for name in plan.lights.dtype.names or () if "cascade" not in name]
         fixed = plan.views[: plan.fixed]
         self.lamp_key = (plan.lights[light_fields].tobytes(), fixed.tobytes())

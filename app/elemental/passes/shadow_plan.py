@@ -11,33 +11,37 @@ import numpy as np
 from elemental.core.layout import layouts, pack_array
 from elemental.passes import shadow_fit
 from elemental.passes.camera_view import far_plane
+from elemental.passes.light_pack import light_bounds, pack_lights, reach
 from elemental.passes.scene_pack import Array
 from elemental.passes.shadow_fit import Bounds, FittedView, ViewFrustum
 from elemental.scene.model import Camera, Light
 
-KINDS = ("directional", "point", "spot")
-"""In the order of LIGHT_*."""
-CONE_MARGIN = 1e-3
-"""Least difference of a spot's cone cosines, as KHR_lights_punctual recommends."""
+CULLED_FROM = 5
+"""So many point and spot lights are worth a pass that finds out where each one reaches."""
 
 
 @dataclass(frozen=True)
 class ShadowSettings:
     """resolution: texels a side of each map; cascades: most of them for a directional light;
-    reach: how far they go from the camera in m, 0 = the scene's diagonal."""
+    reach: how far they go from the camera in m, 0 = the scene's diagonal. culling: many lights are
+    culled, those without a range at `cutoff` lux."""
 
     resolution: int = 1024
     cascades: int = 3
     reach: float = 0.0
+    culling: bool = True
+    cutoff: float = 1e-3
 
 
 @dataclass(frozen=True)
 class ShadowPlan:
     """lights (L,) of the struct Light, never empty; views (V,) of the struct ShadowView, the
     cascades behind the `fixed` ones, which do not depend on the camera; names by view; `layers`
-    that no camera exceeds."""
+    that no camera exceeds. bounds (L, 4) of `light_bounds`; culled: whether they are worth it."""
 
     lights: Array
+    bounds: Array
+    culled: bool
     views: Array
     names: list[str]
     fixed: int
@@ -69,13 +73,21 @@ def plan_shadows(
             views |= {f"{number}.cascade.{k}": view for k, view in enumerate(fitted)}
         cascades.append((first, len(views) - first))
     suns = sum(light.kind == "directional" and light.casts_shadow for light in lights)
+    culled = settings.culling and len(lights) - _suns(lights) >= CULLED_FROM
+    ranges = [reach(light, settings.cutoff) if culled else light.range for light in lights]
     return ShadowPlan(
-        lights=pack_lights(lights, first_view, cascades),
+        lights=pack_lights(lights, first_view, cascades, ranges),
+        bounds=light_bounds(lights, ranges),
+        culled=culled,
         views=_pack_views(list(views.values())),
         names=list(views),
         fixed=fixed,
         layers=fixed + suns * settings.cascades,
     )
+
+
+def _suns(lights: Sequence[Light]) -> int:
+    return sum(light.kind == "directional" for light in lights)
 
 
 def _fixed_views(light: Light, bounds: Bounds, resolution: int) -> list[FittedView]:
@@ -121,34 +133,4 @@ def _pack_views(fitted: Sequence[FittedView]) -> Array:
         clip_from_world=np.array([view.clip_from_world for view in fitted]).reshape(-1, 4, 4),
         texel=[view.texel for view in fitted],
         depth_bias=[shadow_fit.DEPTH_BIAS] * len(fitted),
-    )
-
-
-def pack_lights(
-    lights: Sequence[Light], first_view: Sequence[int], cascades: Sequence[tuple[int, int]]
-) -> Array:
-    """(lights,) of the GLSL struct Light; one of intensity 0 where there is none.
-
-    first_view: -1 without a shadow; cascades: (first view, count).
-    """
-    if not lights:
-        zero, down = np.zeros(3, np.float32), np.array([0.0, -1.0, 0.0], np.float32)
-        dark = Light("none", "directional", zero, 0.0, zero, down, casts_shadow=False)
-        lights, first_view, cascades = [dark], [-1], [(0, 0)]
-    cosines = np.cos([(light.inner_angle, light.outer_angle) for light in lights])
-    spot_scale = 1.0 / np.maximum(cosines[:, 0] - cosines[:, 1], CONE_MARGIN)
-    return pack_array(
-        layouts().struct("Light"),
-        len(lights),
-        position_ws=[light.position for light in lights],
-        range=[0.0 if math.isinf(light.range) else light.range for light in lights],
-        direction_ws=[light.direction for light in lights],
-        source_radius=[light.source_radius for light in lights],
-        intensity=[light.color * light.intensity for light in lights],
-        kind=[KINDS.index(light.kind) for light in lights],
-        spot_scale=spot_scale,
-        spot_offset=-cosines[:, 1] * spot_scale,
-        shadow_view=first_view,
-        first_cascade=[first for first, _ in cascades],
-        cascade_count=[count for _, count in cascades],
     )

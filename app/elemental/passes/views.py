@@ -8,6 +8,7 @@ from elemental.gpu.graph import Graph
 from elemental.gpu.refs import TextureHandle
 from elemental.gpu.shaders import Compute
 from elemental.passes.gbuffer import GBuffer
+from elemental.passes.light_cells import ALL_LIGHTS, NO_CELLS, VIEW_CELLS, LightCells
 from elemental.passes.shadow import ShadowMaps
 
 CHANNELS = {
@@ -33,8 +34,11 @@ SURFACE = {
     for name in CHANNELS
 }
 LIGHTS = {
-    name: Compute("views/lights.comp.glsl", defines={"SHOW_RADIANCE": int(name == "direct")})
+    (name, cells): Compute(
+        "views/lights.comp.glsl", {"SHOW_RADIANCE": int(name == "direct"), "LIGHT_CELLS": cells}
+    )
     for name in LIGHT_VIEWS
+    for cells in (ALL_LIGHTS, VIEW_CELLS)
 }
 
 
@@ -52,15 +56,22 @@ def surface_view(g: Graph, view: Block, gb: GBuffer, name: str) -> TextureHandle
     return image
 
 
-def light_view(g: Graph, view: Block, gb: GBuffer, shadows: ShadowMaps, name: str) -> TextureHandle:
+def light_view(
+    g: Graph,
+    view: Block,
+    gb: GBuffer,
+    shadows: ShadowMaps,
+    name: str,
+    cells: LightCells = NO_CELLS,
+) -> TextureHandle:
     """One of LIGHT_VIEWS, (H, W) RGBA16F linear."""
     image = g.texture(f"view.{name}", size=gb.depth.size, format=RGBA16F)
     g.compute(
-        LIGHTS[name],
+        LIGHTS[name, cells.kind],
         f"view.{name}",
-        reads={**gb.reads(), **shadows.reads()},
+        reads={**gb.reads(), **shadows.reads(), **cells.reads()},
         writes={"o_image": image},
-        params={"View": view, **shadows.params()},
+        params={"View": view, **shadows.params(), **cells.params()},
         threads=image.size,
     )
     return image

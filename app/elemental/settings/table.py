@@ -79,6 +79,16 @@ TABLE = (
     Setting("ambient_cubemap.tint", "color", (1.0, 1.0, 1.0), "tint of that light",
             lo=0, hi=1, volume=True),
     Setting(
+        "lights.culling", "bool", True,
+        "find out which of many point and spot lights reach which part of view and scene",
+        source="[Olsson12]",
+    ),
+    Setting(
+        "lights.cutoff", "float", 1e-3,
+        "irradiance, times 2^exposure, where one of many lights without a range ends",
+        unit="lux", lo=1e-6, hi=1.0,
+    ),
+    Setting(
         "shadow.resolution", "choice", 1024,
         "texels a side of each shadow map and of each cascade",
         unit="texels", choices=(256, 512, 1024, 2048, 4096),

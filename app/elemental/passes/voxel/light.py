@@ -9,6 +9,7 @@ from elemental.core.layout import Block
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import AnyBuffer
 from elemental.gpu.shaders import Compute
+from elemental.passes.light_cells import ALL_LIGHTS, NO_CELLS, WORLD_CELLS, LightCells
 from elemental.passes.voxel.build import level_params, state_offset
 from elemental.passes.voxel.octree import Octree
 
@@ -16,11 +17,17 @@ if TYPE_CHECKING:
     from elemental.passes.shadow import ShadowMaps
     from elemental.passes.sky import Sky
 
-LIGHT = Compute("voxel/light.comp.glsl")
-LIGHT_AND_GATHER = Compute("voxel/light.comp.glsl", defines={"GATHER": 1, "CONE_SPLIT": 1})
-LIGHT_AND_GATHER_LAST = Compute(
-    "voxel/light.comp.glsl", defines={"GATHER": 1, "CONE_SPLIT": 1, "SPREAD": 1}
-)
+GATHERS: dict[str, dict[str, int]] = {
+    "nothing": {},
+    "present": {"GATHER": 1, "CONE_SPLIT": 1},
+    "last": {"GATHER": 1, "CONE_SPLIT": 1, "SPREAD": 1},
+}
+"""Whose radiance is gathered, that of this frame or of the last -> defines."""
+LIGHT = {
+    (gathered, cells): Compute("voxel/light.comp.glsl", {**defines, "LIGHT_CELLS": cells})
+    for gathered, defines in GATHERS.items()
+    for cells in (ALL_LIGHTS, WORLD_CELLS)
+}
 SIDED_BYTES_A_BRICK = 8 * 6 * 8
 
 
@@ -42,11 +49,13 @@ def light_voxels(
     area_lights: Block,
     gather: bool,
     of_last_frame: bool = False,
+    cells: LightCells = NO_CELLS,
 ) -> None:
     """Radiance of the listed leaf voxels: emission and direct light through the shadow maps.
 
     ``gather``: also what arrives by cones through the octree's present radiance and from
     ``area_lights``, one more bounce; ``of_last_frame``: that radiance is of the frame before.
+    ``cells``: of `cull_to_world`.
     """
     reads = {
         "State": octree.state,
@@ -54,14 +63,15 @@ def light_voxels(
         "Attributes": octree.attributes,
         "VoxelList": octree.voxel_list,
         **shadows.reads(),
+        **cells.reads(),
     }
-    params = {**octree.params, **shadows.params()}
+    params = {**octree.params, **shadows.params(), **cells.params()}
     if gather:
         reads |= {**octree.tracing_reads(), **sky.reads()}
         params |= {"AreaLights": area_lights, **sky.params()}
-    gathering = LIGHT_AND_GATHER_LAST if of_last_frame else LIGHT_AND_GATHER
+    gathered = ("last" if of_last_frame else "present") if gather else "nothing"
     g.compute(
-        gathering if gather else LIGHT,
+        LIGHT[gathered, cells.kind],
         "light voxels",
         reads=reads,
         writes={"Radiance": octree.radiance},

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from elemental.core.layout import Block
 from elemental.gpu.device import Device
 from elemental.gpu.graph import Graph
+from elemental.passes.light_cells import cull_to_world
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.voxel import sizing
 from elemental.passes.voxel.build import build
@@ -148,9 +149,17 @@ class VoxelLighting:
             return self.octree
         sided = self._kept.sided if self._kept is not None else None
         spread &= not whole
+        cells = cull_to_world(g, shadows, self.octree.grid)
         for bounce in (1,) if spread else range(max(bounces, 1)):
             light_voxels(
-                g, self.octree, shadows, sky, area_lights, gather=bounce > 0, of_last_frame=spread
+                g,
+                self.octree,
+                shadows,
+                sky,
+                area_lights,
+                gather=bounce > 0,
+                of_last_frame=spread,
+                cells=cells,
             )
             compress(g, self.octree, filter_levels(g, self.octree, sided))
         self._lit_by = key
