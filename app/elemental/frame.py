@@ -150,7 +150,7 @@ class Renderer:
         """Bring the scene to its pose at a time, or to the given one. Returns its lights."""
         if pose is None and self.scene.motion is not None:
             pose = evaluate(self.scene, time_s)
-        self._meshes.update(pose)
+        self._meshes.update(pose, time_s)
         if pose is None:
             return self.scene.lights
         if self._area_lights:

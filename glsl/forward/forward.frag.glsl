@@ -15,6 +15,7 @@
 uniform sampler2D u_diffuse_gi;  // irradiance / pi; a: visibility of the sky
 #endif
 
+in vec3 v_position_ws;
 in vec3 v_normal_ws;
 in vec4 v_tangent_ws;
 in vec2 v_uv0;
@@ -42,9 +43,10 @@ vec3 shade_translucent(Surface s, vec3 n_ws, vec3 p_ws) {
 }
 
 void main() {
-    Surface s = evaluate_material(v_material, v_uv0, v_uv1, v_color);
     float facing = gl_FrontFacing ? 1.0 : -1.0;
-    vec3 n_ws = normal_from_tangent_space(s.normal_ts, v_normal_ws, v_tangent_ws, facing);
+    Surface s = evaluate_material(MaterialInput(v_material, v_position_ws,
+        normalize(v_normal_ws) * facing, v_uv0, v_uv1, v_color, u_material.time_s));
+    vec3 n_ws = surface_normal(s, v_normal_ws, v_tangent_ws, facing);
     vec3 p_ws = position_ws_at(gl_FragCoord.xy * u_view.viewport_px.zw, gl_FragCoord.z);
     vec3 radiance = s.lighting_model == LIGHTING_UNLIT ? s.emissive : shade_translucent(s, n_ws, p_ws);
     o_radiance = vec4(radiance * s.opacity, s.opacity);

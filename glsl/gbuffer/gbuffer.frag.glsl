@@ -3,6 +3,7 @@
 #include "lib/material.glsl"
 #include "lib/tangent_space.glsl"
 
+in vec3 v_position_ws;
 in vec3 v_normal_ws;
 in vec4 v_tangent_ws;
 in vec2 v_uv0;
@@ -17,13 +18,14 @@ layout(location = 3) out vec4 o_c;
 layout(location = 4) out vec4 o_d;
 
 void main() {
-    Surface s = evaluate_material(v_material, v_uv0, v_uv1, v_color);
+    float facing = gl_FrontFacing ? 1.0 : -1.0;
+    Surface s = evaluate_material(MaterialInput(v_material, v_position_ws,
+        normalize(v_normal_ws) * facing, v_uv0, v_uv1, v_color, u_material.time_s));
 #ifdef ALPHA_MASK
     if (s.opacity < materials[v_material].alpha_cutoff) discard;
 #endif
-    float facing = gl_FrontFacing ? 1.0 : -1.0;
     GBufferSurface surface;
-    surface.normal_ws = normal_from_tangent_space(s.normal_ts, v_normal_ws, v_tangent_ws, facing);
+    surface.normal_ws = surface_normal(s, v_normal_ws, v_tangent_ws, facing);
     surface.lighting_model = s.lighting_model;
     surface.specular_color = s.specular_color;
     surface.ambient_occlusion = s.ambient_occlusion;

@@ -10,6 +10,7 @@ in vec2 a_uv1;
 in vec4 a_color;
 in uint a_instance;
 
+out vec3 v_position_ws;
 out vec3 v_normal_ws;
 out vec4 v_tangent_ws;
 out vec2 v_uv0;
@@ -27,5 +28,7 @@ void main() {
     v_uv1 = a_uv1;
     v_color = a_color;
     v_material = instances[a_instance].material;
-    gl_Position = u_view.clip_from_world * (world_from_local * vec4(a_position, 1.0));
+    vec4 position_ws = world_from_local * vec4(a_position, 1.0);
+    v_position_ws = position_ws.xyz;
+    gl_Position = u_view.clip_from_world * position_ws;
 }

@@ -1,9 +1,12 @@
 // evaluate_material: what a material says about a surface point, in the talk's terms. Used by every
-// pass that draws meshes. MATERIAL_TEXTURES is the mask of the slots (1 << SLOT_*) that may have a
-// texture; the fetches of the others are left out.
-#include "shared/gbuffer.glsl"
+// pass that draws meshes. [Mittring12 "Voxel Lighting Pipeline": artist defined material]
+//
+// A description with snippets={"material": ...} puts the artist's code where <material> is included;
+// without one the material is glTF's. MATERIAL_TEXTURES is the mask of the glTF slots (1 << SLOT_*)
+// that may have a texture; the fetches of the others are left out. MATERIAL_FAULTS 1: a surface that
+// is no number is shown as the fallback, and told in the buffer MaterialFaults.
 #include "shared/material.glsl"
-#include "lib/brdf.glsl"
+#include "lib/surface.glsl"
 
 #ifndef MATERIAL_TEXTURES
 #define MATERIAL_TEXTURES 31
@@ -11,6 +14,9 @@
 // 0: every slot reads the first uv set as it is.
 #ifndef MATERIAL_UV_TRANSFORMS
 #define MATERIAL_UV_TRANSFORMS 1
+#endif
+#ifndef MATERIAL_FAULTS
+#define MATERIAL_FAULTS 0
 #endif
 
 // Absent textures are bound to a 1x1 white one (a flat normal for u_normal_texture).
@@ -20,21 +26,9 @@ uniform sampler2D u_normal_texture;
 uniform sampler2D u_occlusion_texture;           // r
 uniform sampler2D u_emissive_texture;            // sRGB
 
-// Reflectance of a dielectric at normal incidence, glTF 2.0 appendix B (index of refraction 1.5).
-const vec3 DIELECTRIC_SPECULAR = vec3(0.04);
-
-struct Surface {
-    vec3 albedo;            // diffuse
-    float opacity;
-    vec3 specular_color;    // reflectance at normal incidence
-    float specular_power;
-    vec3 emissive;          // radiance
-    float roughness;
-    vec3 normal_ts;         // unit
-    float ambient_occlusion;
-    vec3 subsurface_color;
-    uint lighting_model;    // LIGHTING_*
-};
+#if MATERIAL_FAULTS
+layout(std430) buffer MaterialFaults { uint material_faults[]; };  // by material: 1 where one was
+#endif
 
 // The texel of a slot at a surface point. Gradients come from the interpolated coordinates alone:
 // outside the triangle, where the quad's helpers are, llvmpipe reads 0 from buffers, and a
@@ -54,60 +48,96 @@ vec4 material_texel(sampler2D image, uint material, uint slot, vec2 uv0, vec2 uv
 #endif
 }
 
-// Only the opacity: for passes that need the alpha test and nothing else.
-float material_opacity(uint material, vec2 uv0, vec2 uv1, float vertex_alpha) {
-    float opacity = materials[material].base_color.a * vertex_alpha;
+// glTF's base colour and opacity: factor, texture and the vertex's colour.
+vec4 base_color_of(MaterialInput m) {
+    vec4 base_color = materials[m.material].base_color * m.color;
 #if (MATERIAL_TEXTURES & 1) != 0
-    opacity *= material_texel(u_base_color_texture, material, SLOT_BASE_COLOR, uv0, uv1).a;
+    base_color *= material_texel(u_base_color_texture, m.material, SLOT_BASE_COLOR, m.uv0, m.uv1);
 #endif
-    return opacity;
+    return base_color;
 }
 
-// Metallic-roughness to diffuse and specular colour as in glTF 2.0 appendix B ("Material Structure"),
-// roughness to specular power in lib/brdf.glsl. vertex_color: linear.
-Surface evaluate_material(uint material, vec2 uv0, vec2 uv1, vec4 vertex_color) {
-    vec4 base_color = materials[material].base_color * vertex_color;
-    float metallic = materials[material].metallic;
-    float roughness = materials[material].roughness;
-    vec3 emissive = materials[material].emissive;
-    Surface s;
-    s.normal_ts = vec3(0.0, 0.0, 1.0);
-    s.ambient_occlusion = 1.0;
-#if (MATERIAL_TEXTURES & 1) != 0
-    base_color *= material_texel(u_base_color_texture, material, SLOT_BASE_COLOR, uv0, uv1);
-#endif
+// glTF's material: metallic-roughness to diffuse and specular colour as in glTF 2.0 appendix B
+// ("Material Structure").
+Surface standard_surface(MaterialInput m) {
+    vec4 base_color = base_color_of(m);
+    float metallic = materials[m.material].metallic;
+    Surface s = plain_surface();
+    s.roughness = materials[m.material].roughness;
+    s.emissive = materials[m.material].emissive;
 #if (MATERIAL_TEXTURES & 2) != 0
-    vec4 mr = material_texel(u_metallic_roughness_texture, material, SLOT_METALLIC_ROUGHNESS,
-                             uv0, uv1);
-    roughness *= mr.g;
+    vec4 mr = material_texel(u_metallic_roughness_texture, m.material, SLOT_METALLIC_ROUGHNESS,
+                             m.uv0, m.uv1);
+    s.roughness *= mr.g;
     metallic *= mr.b;
 #endif
 #if (MATERIAL_TEXTURES & 4) != 0
-    vec3 n = material_texel(u_normal_texture, material, SLOT_NORMAL, uv0, uv1).xyz;
+    vec3 n = material_texel(u_normal_texture, m.material, SLOT_NORMAL, m.uv0, m.uv1).xyz;
     n = (n * 255.0 - 128.0) / 127.0;  // code 128 is 0: a flat normal map stays flat
-    n.xy *= materials[material].normal_scale;
+    n.xy *= materials[m.material].normal_scale;
     s.normal_ts = normalize(vec3(n.xy, max(n.z, 1e-3)));
 #endif
 #if (MATERIAL_TEXTURES & 8) != 0
-    float ao = material_texel(u_occlusion_texture, material, SLOT_OCCLUSION, uv0, uv1).r;
-    s.ambient_occlusion = 1.0 + materials[material].occlusion_strength * (ao - 1.0);
+    float ao = material_texel(u_occlusion_texture, m.material, SLOT_OCCLUSION, m.uv0, m.uv1).r;
+    s.ambient_occlusion = 1.0 + materials[m.material].occlusion_strength * (ao - 1.0);
 #endif
 #if (MATERIAL_TEXTURES & 16) != 0
-    emissive *= material_texel(u_emissive_texture, material, SLOT_EMISSIVE, uv0, uv1).rgb;
+    s.emissive *= material_texel(u_emissive_texture, m.material, SLOT_EMISSIVE, m.uv0, m.uv1).rgb;
 #endif
     s.albedo = base_color.rgb * (1.0 - metallic);
     s.opacity = base_color.a;
     s.specular_color = mix(DIELECTRIC_SPECULAR, base_color.rgb, metallic);
-    s.roughness = clamp(roughness, 0.0, 1.0);
-    s.specular_power = specular_power_from_roughness(s.roughness);
-    s.emissive = emissive;
-    s.subsurface_color = vec3(0.0);
-    s.lighting_model = LIGHTING_DEFAULT;
-    if ((materials[material].flags & MATERIAL_UNLIT) != 0u) {  // KHR_materials_unlit
-        s.emissive = base_color.rgb;
-        s.albedo = vec3(0.0);
-        s.specular_color = vec3(0.0);
-        s.lighting_model = LIGHTING_UNLIT;
+    return s;
+}
+
+#include <material>
+#ifndef HAS_MATERIAL
+struct Parameters { float none; };
+Parameters material_parameters(uint material) { return Parameters(0.0); }
+void material(inout Surface s, MaterialInput m, Parameters p) { s = standard_surface(m); }
+#endif
+
+// Infinite or not a number, by its bits: compilers may take isnan() for false.
+bool is_fault(float x) {
+    return (floatBitsToUint(x) & 0x7f800000u) == 0x7f800000u;
+}
+
+// A magenta checker of so many squares a metre.
+const float FALLBACK_SQUARES_A_M = 8.0;
+
+Surface fallback_surface(vec3 position_ws) {
+    vec3 cell = floor(position_ws * FALLBACK_SQUARES_A_M + 1e-3);
+    float odd = mod(cell.x + cell.y + cell.z, 2.0);
+    Surface s = plain_surface();
+    make_unlit(s, vec3(1.0, 0.0, 1.0) * mix(0.05, 1.0, odd));
+    return s;
+}
+
+#if MATERIAL_FAULTS
+bool is_faulty(Surface s) {
+    float sum = dot(s.albedo + s.specular_color + s.emissive + s.subsurface_color, vec3(1.0));
+    sum += dot(s.normal_ts + s.height_gradient, vec3(1.0));
+    return is_fault(sum + s.opacity + s.roughness + s.ambient_occlusion);
+}
+#endif
+
+// The surface with every value in its range. What is scattered below the surface and what is
+// reflected diffusely share the light that enters: both together are at most 1.
+Surface evaluate_material(MaterialInput m) {
+    Surface s = plain_surface();
+    material(s, m, material_parameters(m.material));
+#if MATERIAL_FAULTS
+    if (is_faulty(s)) {
+        material_faults[m.material] = 1u;
+        return fallback_surface(m.position_ws);
     }
+#endif
+#ifndef MATERIAL_IS_FALLBACK
+    s.emissive = clamp(s.emissive, vec3(0.0), vec3(materials[m.material].emission_max));
+#endif
+    s.roughness = clamp(s.roughness, 0.0, 1.0);
+    s.specular_power = specular_power_from_roughness(s.roughness);
+    s.subsurface_color = clamp(s.subsurface_color, 0.0, 1.0);
+    s.albedo = clamp(s.albedo, vec3(0.0), 1.0 - s.subsurface_color);
     return s;
 }

@@ -8,13 +8,16 @@ in vec3 a_position;
 in uint a_instance;
 
 #ifdef ALPHA_MASK
+in vec3 a_normal;
 in vec2 a_uv0;
 in vec2 a_uv1;
 in vec4 a_color;
 
+out vec3 v_position_ws;
+out vec3 v_normal_ws;
 out vec2 v_uv0;
 out vec2 v_uv1;
-out float v_alpha;
+out vec4 v_color;
 flat out uint v_material;
 #endif
 
@@ -22,9 +25,11 @@ void main() {
     vec4 p_ws = instances[a_instance].world_from_local * vec4(a_position, 1.0);
     gl_Position = shadow_views[u_pass.view].clip_from_world * p_ws;
 #ifdef ALPHA_MASK
+    v_position_ws = p_ws.xyz;
+    v_normal_ws = mat3(instances[a_instance].normal_from_local) * a_normal;
     v_uv0 = a_uv0;
     v_uv1 = a_uv1;
-    v_alpha = a_color.a;
+    v_color = a_color;
     v_material = instances[a_instance].material;
 #endif
 }

@@ -1,5 +1,5 @@
-// Metallic-roughness materials as glTF states them; the talk's model is derived in lib/material.glsl.
-const uint MATERIAL_UNLIT = 1u;
+// A material: glTF's metallic-roughness values, and those of the artist's own parameters. What they
+// mean is derived in lib/material.glsl and in the material's snippet.
 const uint MATERIAL_DOUBLE_SIDED = 2u;
 const uint MATERIAL_MASK = 4u;
 const uint MATERIAL_BLEND = 8u;
@@ -12,6 +12,8 @@ const uint SLOT_OCCLUSION = 3u;
 const uint SLOT_EMISSIVE = 4u;
 const uint SLOT_COUNT = 5u;
 
+const uint MATERIAL_VECTORS = 8u;  // vec4s of the artist's own parameters
+
 struct Material {
     vec4 base_color;    // linear
     vec3 emissive;      // radiance
@@ -23,9 +25,15 @@ struct Material {
     uint flags;         // MATERIAL_*
     uint texture_mask;  // bit SLOT_*: the slot has a texture
     uint uv_set_mask;   // bit SLOT_*: the slot reads the second uv set
-    uint reserved;
+    float emission_max; // radiance beyond is cut: voxels have a range
     vec4 uv_row_u[5];   // per slot: u = dot(row.xyz, vec3(uv, 1)), KHR_texture_transform
     vec4 uv_row_v[5];
+    vec4 parameters[8]; // where each is, the material's definition says
 };
 
 layout(std430) readonly buffer Materials { Material materials[]; };
+
+// What all materials of a frame are evaluated with.
+layout(std140) uniform MaterialFrame {
+    float time_s;
+} u_material;

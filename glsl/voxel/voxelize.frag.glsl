@@ -8,6 +8,7 @@
 #include "lib/packing.glsl"
 
 in vec3 v_point;
+in vec3 v_position_ws;
 in vec3 v_normal_ws;
 in vec2 v_uv0;
 in vec2 v_uv1;
@@ -19,7 +20,9 @@ layout(std430) buffer State { OctreeState octree_state; };
 layout(std430) buffer Fragments { VoxelFragment fragments[]; };
 
 void main() {
-    Surface surface = evaluate_material(v_material, v_uv0, v_uv1, v_color);
+    vec3 normal_ws = normalize(v_normal_ws);
+    Surface surface = evaluate_material(MaterialInput(v_material, v_position_ws, normal_ws,
+        v_uv0, v_uv1, v_color, u_material.time_s));
     bool masked = (materials[v_material].flags & MATERIAL_MASK) != 0u;
     if (masked && surface.opacity < materials[v_material].alpha_cutoff) discard;
     bool blended = (materials[v_material].flags & MATERIAL_BLEND) != 0u;
@@ -38,7 +41,8 @@ void main() {
     VoxelFragment fragment;
     fragment.position = pack_position(point);
     fragment.albedo = packUnorm4x8(vec4(surface.albedo, opacity));
-    fragment.normal = normal_snorm8_pack(normalize(v_normal_ws));
-    fragment.emissive = rgb9e5_pack(surface.emissive * v_emission);
+    fragment.normal = normal_snorm8_pack(normal_ws);
+    vec3 emissive = min(surface.emissive, materials[v_material].emission_max);
+    fragment.emissive = rgb9e5_pack(emissive * v_emission);
     fragments[index] = fragment;
 }

@@ -15,6 +15,7 @@ in mat4 a_normal_from_local;
 in uvec4 a_instance_words;   // material, flags
 
 out vec3 v_point;      // in lattice points from the scene's corner
+out vec3 v_position_ws;
 out vec3 v_normal_ws;
 out vec2 v_uv0;
 out vec2 v_uv1;
@@ -24,6 +25,7 @@ flat out float v_emission;  // 0: an area light, whose emission the voxels leave
 
 void main() {
     vec3 p_ws = (a_world_from_local * vec4(a_position, 1.0)).xyz;
+    v_position_ws = p_ws;
     v_point = scene_point_from_world(p_ws);
     v_normal_ws = mat3(a_normal_from_local) * a_normal;
     v_uv0 = a_uv0;

@@ -24,11 +24,13 @@ from elemental.passes.shadow import ShadowMaps, update_shadows
 from elemental.passes.shadow_plan import ShadowSettings
 from elemental.passes.sky import Sky
 from elemental.passes.views import light_view
+from elemental.scene.definitions import builtin
 from elemental.scene.model import Camera, Instance, Light, Material, Mesh, Scene
 from shapes import Shape
 
 Array = npt.NDArray[Any]
 IDENTITY = np.eye(4, dtype=np.float32)
+UNLIT = builtin("unlit")
 
 
 def vector(*values: float) -> Array:

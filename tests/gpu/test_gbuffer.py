@@ -10,7 +10,7 @@ import pytest
 from elemental.gpu.formats import D24S8, RGB10_A2, RGBA8, RGBA16F
 from elemental.passes.culling import Culling
 from elemental.scene.model import Texture, TextureSlot
-from gpu.rig import IDENTITY, MakeRig, Rig, at, camera, material, mesh, read, scene, vector
+from gpu.rig import IDENTITY, UNLIT, MakeRig, Rig, at, camera, material, mesh, read, scene, vector
 from shapes import box, quad, sphere
 
 ABOVE = camera(vector(0, 3, 0), vector(0, 0, 0))
@@ -63,7 +63,7 @@ def test_a_surface_is_stored_by_the_table(rig: MakeRig) -> None:
 
 
 def test_unlit_is_its_base_colour_and_says_so(rig: MakeRig) -> None:
-    surface = material(base_color=vector(0.25, 0.5, 0.75, 1), unlit=True)
+    surface = material(base_color=vector(0.25, 0.5, 0.75, 1), definition=UNLIT)
     got = channels(rig(scene((mesh(quad()), IDENTITY), materials=[surface]), ABOVE))
     np.testing.assert_array_equal(got["scene_color"][:3], [0.25, 0.5, 0.75])
     assert int(got["a"]) >> 30 == 0

@@ -20,7 +20,7 @@ from gpu.moving import (
     pose_of,
     stage,
 )
-from gpu.rig import IDENTITY, at, camera, material, mesh, scene, sun, vector
+from gpu.rig import IDENTITY, UNLIT, at, camera, material, mesh, scene, sun, vector
 from gpu.voxel.scenes import colored, glowing
 from shapes import quad, sphere
 
@@ -127,7 +127,7 @@ def test_a_new_material_is_the_scene_s_and_changes_its_users(renderers: Any) -> 
         (2, colored(0.9, 0.1, 0.1)),
         (2, glowing(0, 3, 0)),
         (2, glowing(0, 30, 0)),  # brighter than what the voxels were made for
-        (3, material(base_color=vector(3, 2, 1, 1), unlit=True)),  # was an area light
+        (3, material(base_color=vector(3, 2, 1, 1), definition=UNLIT)),  # was an area light
         (3, colored(0.5, 0.5, 0.5)),
         (1, material(base_color=vector(0.2, 0.9, 0.2, 0.5), alpha_mode="blend")),
         (1, material(base_color=vector(0.2, 0.9, 0.2, 1.0), double_sided=True)),

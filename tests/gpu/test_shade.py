@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from elemental.scene.model import Camera, Environment, Light
-from gpu.rig import IDENTITY, MakeRig, at, camera, material, mesh, scene, sun, vector
+from gpu.rig import IDENTITY, UNLIT, MakeRig, at, camera, material, mesh, scene, sun, vector
 from shapes import quad, sphere
 
 Array = npt.NDArray[Any]
@@ -114,7 +114,7 @@ def test_emission_is_added_and_unlit_is_left_alone(rig: MakeRig) -> None:
     glow, flat = vector(2, 1, 0.5), vector(0.5, 0.25, 0.125, 1)
     materials = [
         material(emissive=glow, base_color=vector(0, 0, 0, 1), metallic=1.0),
-        material(base_color=flat, unlit=True),
+        material(base_color=flat, definition=UNLIT),
     ]
     world = scene(
         (mesh(quad(0.8), 0), at(-0.5, 0, 0)),
@@ -163,8 +163,8 @@ def test_the_sky_is_seen_where_it_is(rig: MakeRig) -> None:
 def test_translucent_surfaces_blend_over_in_order(rig: MakeRig) -> None:
     """Two unlit panes of opacity 1/2, given near first: far, then near, over the sky."""
     panes = [
-        material(base_color=vector(1, 0, 0, 0.5), alpha_mode="blend", unlit=True),
-        material(base_color=vector(0, 1, 0, 0.5), alpha_mode="blend", unlit=True),
+        material(base_color=vector(1, 0, 0, 0.5), alpha_mode="blend", definition=UNLIT),
+        material(base_color=vector(0, 1, 0, 0.5), alpha_mode="blend", definition=UNLIT),
     ]
     world = scene(
         (mesh(quad(2.0), 0), at(0, 1, 0)),

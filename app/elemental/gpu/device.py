@@ -63,6 +63,7 @@ class Device:
         self._bytes: Counter[str] = Counter()
         self._fences: deque[int] = deque()
         self._watcher: ShaderWatcher | None = None
+        self._watched: set[Path] = set()
         self.library = ShaderLibrary(self)
         self.executor = Executor(self)
         self.params = ParamRing(self)
@@ -180,7 +181,16 @@ class Device:
     def watch_shaders(self) -> None:
         """From now on let a thread look out for edits, so that a frame without one asks no file."""
         if self._watcher is None:
-            self._watcher = ShaderWatcher(self.shader_root)
+            self._watcher = ShaderWatcher({self.shader_root, *self._watched})
+
+    def watch_folder(self, folder: Path) -> None:
+        """Have ``watch_shaders`` look into another folder, too, now or when it begins."""
+        if folder in self._watched:
+            return
+        self._watched.add(folder)
+        if self._watcher is not None:
+            self.stop_watching_shaders()
+            self.watch_shaders()
 
     def stop_watching_shaders(self) -> None:
         """End the thread of ``watch_shaders``."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,6 +18,7 @@ from elemental.gpu.shaders import (
     Raster,
     Shader,
     ShaderError,
+    SnippetText,
     Source,
     declared_resources,
     flatten,
@@ -111,10 +112,16 @@ class Program:
         self.mgl.release()
 
 
-def compile_program(device: Device, shader: Shader) -> Program:
-    """Flatten, compile, link and reflect. Raises ShaderError with ``file:line`` messages."""
+def compile_program(
+    device: Device, shader: Shader, snippets: Mapping[str, SnippetText] | None = None
+) -> Program:
+    """Flatten, compile, link and reflect. Raises ShaderError with ``file:line`` messages.
+
+    ``snippets``: by the names that the shader includes them by.
+    """
     sources = {
-        stage: flatten(path, shader.defines, device.shader_root) for stage, path in shader.stages
+        stage: flatten(path, shader.defines, device.shader_root, snippets)
+        for stage, path in shader.stages
     }
     mgl = _link(device.ctx, shader, sources)
     device.gl.label(c.LABEL_PROGRAM, mgl.glo, repr(shader))

@@ -10,12 +10,14 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Protocol
 
 from elemental.core.paths import glsl_root
 from elemental.gpu.formats import IMAGE_QUALIFIERS
 
 Define = int | float | bool | str
 _INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
+_SNIPPET = re.compile(r"^\s*#\s*include\s+<(\w+)>")
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.S)
 
 
@@ -23,16 +25,56 @@ class ShaderError(Exception):
     """A shader that can't be read, compiled or bound; the message names file and line."""
 
 
+@dataclass(frozen=True, slots=True)
+class SnippetText:
+    """What stands for ``#include <name>``: ``prelude``, then the lines of ``file``.
+
+    ``label`` is what messages call the file.
+    """
+
+    prelude: str
+    file: Path
+    label: str
+
+
+class Snippet(Protocol):
+    """Code of an artist's that shaders take in by ``snippets={"name": key}``.
+
+    The library loads it, compiles every program that uses it, and settles: only if all of them
+    compile does the new text count.
+    """
+
+    @property
+    def file(self) -> Path:
+        """Where its text is, present or not."""
+
+    def load(self) -> SnippetText:
+        """The text as it is on disk now. Raises ShaderError."""
+
+    def fallback(self, broken: bool) -> SnippetText:
+        """What shows loudly that a program never compiled. `broken`: nor could it be loaded."""
+
+    def settle(self, accepted: bool) -> None:
+        """Told once after each ``load``, whether what it gave is in use now."""
+
+
 class _Shader:
     """Base of the two descriptions: hashable, compared by value, hash computed once."""
 
-    __slots__ = ("_hash", "_key", "defines", "name", "stages")
+    __slots__ = ("_hash", "_key", "defines", "name", "snippets", "stages")
 
-    def __init__(self, stages: tuple[tuple[str, str], ...], defines: Mapping[str, Define]) -> None:
+    def __init__(
+        self,
+        stages: tuple[tuple[str, str], ...],
+        defines: Mapping[str, Define],
+        snippets: Mapping[str, str],
+    ) -> None:
         self.stages = stages
         """(stage, path relative to the GLSL root or absolute) pairs."""
         self.defines: tuple[tuple[str, Define], ...] = tuple(sorted(defines.items()))
-        self._key = (stages, self.defines)
+        self.snippets: tuple[tuple[str, str], ...] = tuple(sorted(snippets.items()))
+        """(name in ``#include <name>``, key in the library's ``snippets``) pairs."""
+        self._key = (stages, self.defines, self.snippets)
         self._hash = hash(self._key)
         main = Path(stages[-1][1] if stages[0][0] == "compute" else stages[1][1])
         self.name = "/".join((*main.parts[-2:-1], main.name.split(".")[0])).lstrip("/")
@@ -46,7 +88,8 @@ class _Shader:
 
     def __repr__(self) -> str:
         defines = "".join(f" {k}={v}" for k, v in self.defines)
-        return " + ".join(path for _, path in self.stages) + defines
+        snippets = "".join(f" <{name}>={Path(key).stem}" for name, key in self.snippets)
+        return " + ".join(path for _, path in self.stages) + defines + snippets
 
 
 class Compute(_Shader):
@@ -54,8 +97,13 @@ class Compute(_Shader):
 
     __slots__ = ()
 
-    def __init__(self, path: str | Path, defines: Mapping[str, Define] | None = None) -> None:
-        super().__init__((("compute", str(path)),), defines or {})
+    def __init__(
+        self,
+        path: str | Path,
+        defines: Mapping[str, Define] | None = None,
+        snippets: Mapping[str, str] | None = None,
+    ) -> None:
+        super().__init__((("compute", str(path)),), defines or {}, snippets or {})
 
 
 class Raster(_Shader):
@@ -69,11 +117,12 @@ class Raster(_Shader):
         frag: str | Path,
         geom: str | Path | None = None,
         defines: Mapping[str, Define] | None = None,
+        snippets: Mapping[str, str] | None = None,
     ) -> None:
         stages = [("vertex", str(vert)), ("fragment", str(frag))]
         if geom is not None:
             stages.append(("geometry", str(geom)))
-        super().__init__(tuple(stages), defines or {})
+        super().__init__(tuple(stages), defines or {}, snippets or {})
 
 
 Shader = Compute | Raster
@@ -99,11 +148,13 @@ def flatten(
     path: str,
     defines: tuple[tuple[str, Define], ...] = (),
     root: Path | None = None,
+    snippets: Mapping[str, SnippetText] | None = None,
 ) -> Source:
     """Join ``path`` and all that it includes, each file once, behind version and defines.
 
     Includes are relative to ``root`` (the GLSL root). A file is joined where it is first named,
-    whether or not an ``#if`` hides that line. Raises ShaderError for a missing file.
+    whether or not an ``#if`` hides that line. ``#include <name>`` takes in a snippet, or nothing
+    where none is given. Raises ShaderError for a missing file.
     """
     root = root or glsl_root()
     text: list[str] = ["#version 430 core"]
@@ -113,8 +164,14 @@ def flatten(
         lines.append((f"<define {name}>", 1))
     files: dict[Path, None] = {}
 
-    def add(name: str, origin: str) -> None:
-        file = root / name
+    def add_snippet(snippet: SnippetText) -> None:
+        for line in snippet.prelude.splitlines():
+            text.append(line)
+            lines.append((f"<parameters of {snippet.label}>", 1))
+        add(str(snippet.file), snippet.label, snippet.label)
+
+    def add(path: str, origin: str, label: str | None = None) -> None:
+        file, name = root / path, label or path
         if file in files:
             return
         files[file] = None
@@ -126,6 +183,11 @@ def flatten(
             include = _INCLUDE.match(line)
             if include:
                 add(include.group(1), f"{name}:{number}")
+                continue
+            placeholder = _SNIPPET.match(line)
+            if placeholder:
+                if snippets and placeholder.group(1) in snippets:
+                    add_snippet(snippets[placeholder.group(1)])
                 continue
             if line.lstrip().startswith("#version"):
                 raise ShaderError(f"{name}:{number}: the flattener writes #version, remove it")

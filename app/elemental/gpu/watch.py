@@ -3,24 +3,25 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Collection
 from pathlib import Path
 
 from watchfiles import watch
 
 
 class ShaderWatcher:
-    """A thread that waits for changes below a folder."""
+    """A thread that waits for changes below some folders."""
 
-    def __init__(self, root: Path) -> None:
+    def __init__(self, roots: Collection[Path]) -> None:
         self._changed = threading.Event()
         self._stop = threading.Event()
         self._thread = threading.Thread(
-            target=self._wait, args=(root,), name="shader watcher", daemon=True
+            target=self._wait, args=(tuple(roots),), name="shader watcher", daemon=True
         )
         self._thread.start()
 
-    def _wait(self, root: Path) -> None:
-        for _ in watch(root, stop_event=self._stop, debounce=50, step=10):
+    def _wait(self, roots: tuple[Path, ...]) -> None:
+        for _ in watch(*roots, stop_event=self._stop, debounce=50, step=10):
             self._changed.set()
 
     def take(self) -> bool:

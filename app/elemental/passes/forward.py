@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+from itertools import groupby
+
 from elemental.core.layout import Block
 from elemental.gpu.encode import Encoder
 from elemental.gpu.graph import Graph
@@ -13,8 +15,9 @@ from elemental.gpu.shaders import Raster
 from elemental.gpu.state import RasterState
 from elemental.passes.gbuffer import VERT, VIEWER, GBuffer
 from elemental.passes.light_cells import ALL_LIGHTS, NO_CELLS, VIEW_CELLS, LightCells
+from elemental.passes.material_table import material_shader
 from elemental.passes.scene_gpu import GpuScene
-from elemental.passes.scene_pack import BLEND
+from elemental.passes.scene_pack import ALL_SLOTS, BLEND, Batch
 from elemental.passes.shadow import ShadowMaps
 from elemental.passes.sky import Sky
 
@@ -24,6 +27,7 @@ VARIANTS = {
     for gi in (0, 1)
     for cells in (ALL_LIGHTS, VIEW_CELLS)
 }
+"""Of glTF's material."""
 STATE = RasterState(cull="back", depth_test="lequal", depth_write=False, blend="premultiplied")
 
 
@@ -44,21 +48,33 @@ def draw_translucent(
     """
     if not scene.batches(BLEND):
         return gb.scene_color
-    reads: dict[str, Ref] = {"Instances": scene.instances, "Materials": scene.materials}
-    reads |= {**shadows.reads(), **cells.reads(), **sky.reads()}
+    reads: dict[str, Ref] = {**scene.reads(), **shadows.reads(), **cells.reads(), **sky.reads()}
     if diffuse_gi is not None:
         reads["u_diffuse_gi"] = diffuse_gi
 
-    def draw(enc: Encoder) -> None:
-        scene.draw(enc, scene.back_to_front(view["eye_ws"]), seen_by=VIEWER)
+    blocks = (scene.params(), shadows.params(), cells.params(), sky.params())
+    params = {"View": view, **{name: block for some in blocks for name, block in some.items()}}
+    defines = {"GI": int(diffuse_gi is not None), "LIGHT_CELLS": cells.kind}
 
-    g.raster(
-        VARIANTS[int(diffuse_gi is not None), cells.kind],
-        color=gb.scene_color,
-        depth=gb.depth,
-        reads=reads,
-        params={"View": view, **shadows.params(), **cells.params(), **sky.params()},
-        state=STATE,
-        draw=draw,
-    )
+    def program(batch: Batch) -> Raster:
+        return material_shader(
+            VERT, FRAG, batch, defines, texture_mask=ALL_SLOTS, uv_transforms=True
+        )
+
+    for shader, run in groupby(scene.back_to_front(view["eye_ws"]), program):
+        batches = list(run)
+
+        def draw(enc: Encoder, batches: list[Batch] = batches) -> None:
+            scene.draw(enc, batches, seen_by=VIEWER)
+
+        g.raster(
+            shader,
+            color=gb.scene_color,
+            depth=gb.depth,
+            reads=reads,
+            writes=scene.materials.writes(batches),
+            params=params,
+            state=STATE,
+            draw=draw,
+        )
     return gb.scene_color

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 
@@ -15,9 +14,9 @@ from elemental.gpu.graph import Graph
 from elemental.gpu.refs import Ref, TextureHandle
 from elemental.gpu.shaders import Raster
 from elemental.gpu.state import RasterState
+from elemental.passes.material_table import material_shader
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.scene_pack import SOLID, Batch
-from elemental.scene.model import AlphaMode
 
 VERT, FRAG = "gbuffer/gbuffer.vert.glsl", "gbuffer/gbuffer.frag.glsl"
 STATE = RasterState(cull="back", depth_test="lequal")
@@ -26,12 +25,9 @@ VIEWER = "camera"
 CLEAR = (0.0, 0.0, 0.0, 0.0)
 
 
-@cache
-def _shader(alpha_mode: AlphaMode, texture_mask: int, uv_transforms: bool) -> Raster:
-    defines = {"MATERIAL_TEXTURES": texture_mask, "MATERIAL_UV_TRANSFORMS": int(uv_transforms)}
-    if alpha_mode == "mask":
-        defines["ALPHA_MASK"] = 1
-    return Raster(VERT, FRAG, defines=defines)
+MASKED = {"ALPHA_MASK": 1}
+EMPTY = Raster(VERT, FRAG)
+"""Clears the targets where nothing is drawn."""
 
 
 @dataclass(frozen=True)
@@ -72,24 +68,37 @@ def draw_gbuffer(g: Graph, view: Block, scene: GpuScene, size: tuple[int, int]) 
         d=g.texture("gbuffer.d", size=size, format=RGBA8),
     )
     scene.look(VIEWER, np.asarray(view["clip_from_world"]).T)
-    groups: dict[tuple[AlphaMode, int, bool], list[Batch]] = defaultdict(list)
+    groups: dict[Raster, list[Batch]] = defaultdict(list)
     for batch in scene.batches(SOLID):
-        groups[batch.alpha_mode, batch.texture_mask, batch.uv_transforms].append(batch)
-    for number, (key, batches) in enumerate((groups or {("opaque", 0, False): []}).items()):
+        defines = MASKED if batch.alpha_mode == "mask" else None
+        groups[material_shader(VERT, FRAG, batch, defines)].append(batch)
+    for number, (shader, batches) in enumerate((groups or {EMPTY: []}).items()):
+        mask = batches[0].texture_mask if batches else 0
 
-        def draw(enc: Encoder, batches: list[Batch] = batches, mask: int = key[1]) -> None:
+        def draw(enc: Encoder, batches: list[Batch] = batches, mask: int = mask) -> None:
             scene.draw(enc, batches, texture_mask=mask, seen_by=VIEWER)
 
         g.raster(
-            _shader(*key),
-            name=f"gbuffer.{key[0]}.{key[1]}{'.uv' if key[2] else ''}",
+            shader,
+            name=_name(batches),
             color=[gb.scene_color, gb.a, gb.b, gb.c, gb.d],
             depth=gb.depth,
-            reads={"Instances": scene.instances, "Materials": scene.materials},
-            params={"View": view},
+            reads=scene.reads(),
+            writes=scene.materials.writes(batches),
+            params={"View": view, **scene.params()},
             state=STATE,
             clear_color=CLEAR if number == 0 else None,
             clear_depth=1.0 if number == 0 else None,
             draw=draw,
         )
     return gb
+
+
+def _name(batches: list[Batch]) -> str:
+    """Of a pass that draws batches of one program."""
+    if not batches:
+        return "gbuffer"
+    batch = batches[0]
+    uv = ".uv" if batch.uv_transforms else ""
+    material = "" if batch.definition.is_standard else f".{batch.definition.name}"
+    return f"gbuffer.{batch.alpha_mode}.{batch.texture_mask}{uv}{material}"

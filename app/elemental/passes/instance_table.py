@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -95,12 +95,15 @@ class InstanceTable:
 
     def material_changes(self, scene: Scene, material: int, casts: bool) -> list[Change]:
         """The visible instances that use a material; `casts`: it now lets other light through."""
-        users = [
-            number
-            for number, instance in enumerate(scene.instances)
-            if scene.meshes[instance.mesh].material == material and self.visible[number]
-        ]
+        using = self.users(scene, lambda number: number == material) & self.visible
+        users: list[int] = np.flatnonzero(using).tolist()
         return [Change(n, self._box(n), self._box(n), False, casts) for n in users]
+
+    @staticmethod
+    def users(scene: Scene, wanted: Callable[[int], bool]) -> Array:
+        """(N,) bool: the instances whose material's number is wanted."""
+        chosen = np.array([wanted(k) for k in range(len(scene.materials))], np.bool_)
+        return chosen[[scene.meshes[instance.mesh].material for instance in scene.instances]]
 
     def set_area_lights(self, area_lights: Sequence[AreaLight]) -> list[Change]:
         """Flag the instances that are area lights. Returns those that become or cease to be."""

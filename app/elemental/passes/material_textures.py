@@ -8,13 +8,12 @@ from elemental.gpu.device import Device
 from elemental.gpu.formats import RGBA8, SRGB8_A8
 from elemental.gpu.refs import Sampled
 from elemental.gpu.resources import Texture, mip_count
-from elemental.passes.scene_pack import SLOTS, Batch
+from elemental.passes.scene_pack import SLOTS, Batch, OwnTexture
 from elemental.scene.model import Scene
 from elemental.scene.model import Texture as Image
+from elemental.scene.parameters import PLAIN_TEXTURES
 
 SRGB_SLOTS = frozenset({"base_color", "emissive"})
-FLAT_NORMAL = bytes((128, 128, 255, 255))
-WHITE = bytes((255, 255, 255, 255))
 ANISOTROPY = 4.0
 """Samples along the longer axis of a texture lookup's footprint. Software drivers go without: they
 take twice as long for a textured G-buffer with it."""
@@ -27,8 +26,10 @@ class MaterialTextures:
         self._device, self._scene = device, scene
         self._anisotropy = 1.0 if device.info.software else ANISOTROPY
         self._sampled: dict[tuple[bool, int], Sampled] = {}
-        self._white = Sampled(_pixel(device, "white", WHITE))
-        self._flat = Sampled(_pixel(device, "flat normal", FLAT_NORMAL))
+        self._plain = {
+            name: Sampled(_pixel(device, name, bytes(PLAIN_TEXTURES[name])))
+            for name in ("white", "flat")
+        }
 
     def upload(self, batches: Collection[Batch]) -> None:
         """Make the textures of some batches that are not there yet."""
@@ -38,18 +39,32 @@ class MaterialTextures:
                 if number >= 0 and key not in self._sampled:
                     image = self._scene.textures[number]
                     self._sampled[key] = _upload(self._device, image, *key, self._anisotropy)
+            for own in batch.own_textures:
+                key = (own.is_srgb, own.number)
+                if own.number >= 0 and key not in self._sampled:
+                    image = self._scene.textures[own.number]
+                    self._sampled[key] = _upload(self._device, image, *key, self._anisotropy)
+                elif own.number < 0 and own.plain not in self._plain:
+                    texel = bytes(PLAIN_TEXTURES[own.plain])
+                    self._plain[own.plain] = Sampled(_pixel(self._device, own.plain, texel))
 
     def release(self) -> None:
         """Free the textures."""
-        for sampled in (self._white, self._flat, *self._sampled.values()):
+        for sampled in (*self._plain.values(), *self._sampled.values()):
             assert isinstance(sampled.texture, Texture)
             sampled.texture.release()
 
     def sampled(self, slot: str, number: int) -> Sampled:
         """The texture to bind for a slot; -1 gives the neutral one."""
         if number < 0:
-            return self._flat if slot == "normal" else self._white
+            return self._plain["flat" if slot == "normal" else "white"]
         return self._sampled[slot in SRGB_SLOTS, number]
+
+    def own(self, texture: OwnTexture) -> Sampled:
+        """The texture to bind for one of a definition's own."""
+        if texture.number < 0:
+            return self._plain[texture.plain]
+        return self._sampled[texture.is_srgb, texture.number]
 
 
 def _upload(device: Device, image: Image, srgb: bool, number: int, anisotropy: float) -> Sampled:

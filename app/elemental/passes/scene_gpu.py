@@ -7,13 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from elemental.core.layout import Block
 from elemental.gpu.device import Device
 from elemental.gpu.encode import Encoder
 from elemental.gpu.graph import Graph
+from elemental.gpu.refs import Ref
 from elemental.gpu.resources import Buffer, VertexInput
 from elemental.passes import scene_pack
 from elemental.passes.culling import Culling
 from elemental.passes.instance_table import Change, InstanceTable
+from elemental.passes.material_table import MaterialTable
 from elemental.passes.material_textures import MaterialTextures
 from elemental.passes.scene_deform import Deformer
 from elemental.passes.scene_pack import (
@@ -41,9 +44,9 @@ INSTANCE_NAMES = ("a_world_from_local", "a_normal_from_local", "a_instance_words
 class GpuScene:
     """A scene's geometry: merged vertex and index buffers drawn indirectly.
 
-    `instances` and `materials` are the storage blocks of glsl/shared. `bounds` is the box in m
-    (min, max) that the scene never leaves. `lists` is what voxelization draws; what `area_lights`
-    emit is left out of the voxels.
+    `instances` is the storage block of glsl/shared, `materials` has that of the materials. `bounds`
+    is the box in m (min, max) that the scene never leaves. `lists` is what voxelization draws; what
+    `area_lights` emit is left out of the voxels.
 
     Once a frame `update` takes over a pose, and `deform` bends what it bends. `changes` is then
     what became of the instances since the frame before, and `version` counts the frames with any.
@@ -63,13 +66,13 @@ class GpuScene:
         self._repaints = np.zeros(len(scene.instances), np.int64)
         self._geometry = geometry = scene_pack.pack_geometry(scene, scene_pack.bending(scene))
         self.instances = self._upload("instances", self._table.rows, dynamic=True)
-        self.materials = self._upload("materials", scene_pack.pack_materials(scene), dynamic=True)
+        self.materials = MaterialTable(device, scene)
+        self.dynamic |= self._table.users(scene, self.materials.is_animated)
         self.indices = self._upload("indices", geometry.indices)
         self.positions = self._upload("positions", geometry.positions)
         self._surface = self._upload("surface", geometry.surface)
         self._buffers = [
             self.instances,
-            self.materials,
             self.indices,
             self.positions,
             self._surface,
@@ -124,16 +127,25 @@ class GpuScene:
         """Free everything."""
         self._release_order()
         self._textures.release()
+        self.materials.release()
         if self._deformer is not None:
             self._deformer.release()
         for buffer in self._buffers:
             buffer.release()
 
-    def update(self, pose: Pose | None) -> None:
+    def update(self, pose: Pose | None, time_s: float = 0.0) -> None:
         """Begin a frame: take over its pose (None: nothing moved) and list the `changes`.
 
-        Uploads what differs, the rows of the changed instances at once.
+        Uploads what differs, the rows of the changed instances at once. Materials that change with
+        time change the instances that bear them.
         """
+        passing, edited = self.materials.follow(time_s)
+        for index in (*passing, *edited):
+            self._note_material(index, self._scene.materials[index].alpha_mode != "opaque")
+        if edited:
+            self._repaint(edited)
+            self._release_order()
+            self._arrange()
         self.changes = list(self._material_changes.values())
         self._material_changes.clear()
         if pose is not None and len(pose.instances):
@@ -158,18 +170,27 @@ class GpuScene:
     def set_material(self, index: int, material: Material) -> None:
         """Replace a material, here and in the scene; its users are among the next `changes`."""
         before = self._scene.materials[index]
-        self._scene.materials[index] = material
-        packed = scene_pack.pack_materials(self._scene)[index]
-        self.materials.write(packed.tobytes(), index * packed.nbytes)
-        casts = scene_pack.opacity(before) != scene_pack.opacity(material)
-        for change in self._table.material_changes(self._scene, index, casts):
-            self._material_changes[change.instance] = change
-            self._repaints[change.instance] += 1
-        restless = ~self.dynamic & (self._repaints >= RESTLESS_REPAINTS)
-        self.dynamic |= restless
-        if restless.any() or scene_pack.draw_state(before) != scene_pack.draw_state(material):
+        self.materials.set(index, material)
+        material = self._scene.materials[index]
+        self._note_material(index, scene_pack.opacity(before) != scene_pack.opacity(material))
+        restless = self._repaint([index])
+        if restless or scene_pack.draw_state(before) != scene_pack.draw_state(material):
             self._release_order()
             self._arrange()
+
+    def _note_material(self, index: int, casts: bool) -> None:
+        """List the users of a material that looks otherwise now among the next `changes`."""
+        for change in self._table.material_changes(self._scene, index, casts):
+            self._material_changes[change.instance] = change
+
+    def _repaint(self, materials: Sequence[int]) -> bool:
+        """Count changes of materials. Returns whether more instances are dynamic for them."""
+        users = self._table.users(self._scene, materials.__contains__)
+        self._repaints += users
+        ticking = self._table.users(self._scene, self.materials.is_animated)
+        restless = ~self.dynamic & (ticking | (self._repaints >= RESTLESS_REPAINTS))
+        self.dynamic |= restless
+        return bool(restless.any())
 
     def set_area_lights(self, area_lights: Sequence[AreaLight]) -> None:
         """Replace the area lights; instances that become one, or cease to, are among `changes`."""
@@ -177,6 +198,14 @@ class GpuScene:
             self._material_changes.setdefault(change.instance, change)
             row = self._table.rows[change.instance]
             self.instances.write(row.tobytes(), change.instance * row.nbytes)
+
+    def reads(self) -> dict[str, Ref]:
+        """What every pass that draws meshes with their materials reads."""
+        return {"Instances": self.instances, **self.materials.reads()}
+
+    def params(self) -> dict[str, Block]:
+        """The uniform blocks of every pass that draws meshes with their materials."""
+        return self.materials.params()
 
     def look(self, viewer: str, clip_from_world: Array) -> None:
         """Leave out of the draws `seen_by` this viewer what its (4, 4) matrix can't see."""
@@ -254,6 +283,8 @@ class GpuScene:
                 if texture_mask >> index & 1 and bound.get(slot) != texture:
                     encoder.bind(f"u_{slot}_texture", self._textures.sampled(slot, texture))
                     bound[slot] = texture
+            for own in batch.own_textures:
+                encoder.bind(f"u_{own.name}", self._textures.own(own))
             yield batch
 
     def draw_positions(

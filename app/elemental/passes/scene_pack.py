@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import groupby
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +13,7 @@ import numpy.typing as npt
 from elemental.core import transforms
 from elemental.core.layout import layouts, pack_array
 from elemental.scene.area_lights import AreaLight
+from elemental.scene.definitions import VECTORS_MAX, MaterialDefinition
 from elemental.scene.model import AlphaMode, Material, Scene, TextureSlot
 
 Array: TypeAlias = npt.NDArray[Any]
@@ -72,6 +73,17 @@ class Geometry:
     placed_vertex: Array
 
 
+class OwnTexture(NamedTuple):
+    """A texture of a definition's own: its name, then the scene's texture or a plain one."""
+
+    name: str
+    number: int
+    """In Scene.textures, -1 for a plain one."""
+    plain: str
+    """Of PLAIN_TEXTURES."""
+    is_srgb: bool
+
+
 @dataclass(frozen=True)
 class Batch:
     """Draw commands first .. first + count that share fixed state and textures."""
@@ -86,6 +98,8 @@ class Batch:
     """Texture numbers by SLOTS, -1 where a slot is empty."""
     uv_transforms: bool
     """Whether a texture is read by other coordinates than the first set as it is."""
+    definition: MaterialDefinition
+    own_textures: tuple[OwnTexture, ...]
     instance: int
     """The only instance of a blended batch, else -1."""
 
@@ -158,12 +172,13 @@ def pack_materials(scene: Scene) -> Array:
                      for by_slot in slots],
         uv_row_u=rows[:, :, 0],
         uv_row_v=rows[:, :, 1],
+        emission_max=column("emission_max"),
+        parameters=[pack_parameters(material) for material in materials],
     )  # fmt: skip
 
 
 def _flags(material: Material) -> int:
     said = {
-        "UNLIT": material.unlit,
         "DOUBLE_SIDED": material.double_sided,
         "MASK": material.alpha_mode == "mask",
         "BLEND": material.alpha_mode == "blend",
@@ -216,6 +231,7 @@ def pack_draws(
     order = sorted(numbers, key=lambda number: (keys[number], drawn_as[number], number))
     commands: list[tuple[int, int, int, int, int]] = []
     batches: list[Batch] = []
+    definitions = {m.definition.key: m.definition for m in scene.materials}
     drawn = 0
     for key, batch in groupby(order, key=keys.__getitem__):
         first = len(commands)
@@ -223,7 +239,9 @@ def pack_draws(
             size, count = len(scene.meshes[mesh].indices), len(list(same))
             commands.append((size, count, int(geometry.first_index[mesh]), vertex, drawn))
             drawn += count
-        batches.append(Batch(first, len(commands) - first, CATEGORIES[key[0]], *key[1:]))
+        *fixed, definition, own, alone = key[1:]
+        state = (*fixed, definitions[definition], own, alone)
+        batches.append(Batch(first, len(commands) - first, CATEGORIES[key[0]], *state))
     return np.array(commands, DRAW_COMMAND), np.array(order, "<u4"), batches
 
 
@@ -242,31 +260,57 @@ def instance_boxes(scene: Scene) -> tuple[Array, Array]:
     return np.array(low), np.array(high)
 
 
-def _batch_key(
-    scene: Scene, number: int, dynamic: bool
-) -> tuple[int, bool, bool, tuple[int, ...], bool, int]:
-    """(place in CATEGORIES, dynamic, then Batch's fields from `double_sided` to `instance`)."""
+def _batch_key(scene: Scene, number: int, dynamic: bool) -> tuple[Any, ...]:
+    """(place in CATEGORIES, dynamic, then Batch's fields from `double_sided` to `instance`, the
+    definition by its key)."""
     instance = scene.instances[number]
     material = scene.materials[scene.meshes[instance.mesh].material]
-    category, double_sided, textures, transforms_uv = draw_state(material)
+    category, *state = draw_state(material)
     alone = number if material.alpha_mode == "blend" else -1
-    return category, dynamic, double_sided, textures, transforms_uv, alone
+    return category, dynamic, *state, alone
 
 
-def draw_state(material: Material) -> tuple[int, bool, tuple[int, ...], bool]:
+def draw_state(
+    material: Material,
+) -> tuple[int, bool, tuple[int, ...], bool, str, tuple[OwnTexture, ...]]:
     """What a material asks of the draws that use it.
 
-    (place in CATEGORIES, double-sided, texture numbers by SLOTS, whether they have uv transforms).
+    (place in CATEGORIES, double-sided, texture numbers by SLOTS, whether they have uv transforms,
+    its definition's key, the definition's own textures).
     """
     slots = texture_slots(material)
     textures = tuple(-1 if s is None else s.texture for s in slots)
     transforms_uv = any(s is not None and _transforms_uv(s) for s in slots)
     category = CATEGORIES.index(material.alpha_mode)
-    return category, material.double_sided, textures, transforms_uv
+    key, own = material.definition.key, own_textures(material)
+    return category, material.double_sided, textures, transforms_uv, key, own
+
+
+def own_textures(material: Material) -> tuple[OwnTexture, ...]:
+    """The textures that the material's definition declares beyond SLOTS."""
+    found = []
+    for parameter in material.definition.textures:
+        slot = material.textures.get(parameter.name)
+        number = -1 if slot is None else slot.texture
+        plain = str(material.value(parameter.name))
+        found.append(OwnTexture(parameter.name, number, plain, parameter.is_srgb))
+    return tuple(found)
+
+
+def pack_parameters(material: Material) -> Array:
+    """(VECTORS_MAX, 4) float32: the values of the definition's own parameters."""
+    floats = np.zeros(4 * VECTORS_MAX, np.float32)
+    for name, place in material.definition.places().items():
+        value = np.atleast_1d(np.asarray(material.value(name), np.float32))
+        floats[place : place + len(value)] = value
+    return floats.reshape(VECTORS_MAX, 4)
 
 
 def opacity(material: Material) -> tuple[object, ...]:
     """What decides where a material lets light through."""
     slot = material.base_color_texture
     texture = None if slot is None else (slot.texture, slot.uv_set, slot.uv_from_uv.tobytes())
-    return material.alpha_mode, material.alpha_cutoff, float(material.base_color[3]), texture
+    shown = material.alpha_mode, material.alpha_cutoff, float(material.base_color[3]), texture
+    if material.alpha_mode == "opaque" or not material.definition.own:
+        return shown
+    return *shown, material.definition, tuple(material.values.items()), own_textures(material)

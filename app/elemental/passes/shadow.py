@@ -9,6 +9,7 @@ changed begins with a copy of these.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Hashable, Sequence
 
 import numpy as np
@@ -23,14 +24,14 @@ from elemental.gpu.resources import Buffer, Texture
 from elemental.gpu.shaders import Raster
 from elemental.gpu.state import RasterState
 from elemental.passes.culling import in_frustum
+from elemental.passes.material_table import material_shader
 from elemental.passes.scene_gpu import GpuScene
-from elemental.passes.scene_pack import BASE_COLOR_SLOT, MASKED, Array
+from elemental.passes.scene_pack import BASE_COLOR_SLOT, MASKED, Array, Batch
 from elemental.passes.shadow_plan import ShadowPlan, ShadowSettings, plan_shadows
 from elemental.scene.model import Camera, Light
 
 VERT, FRAG = "shadow/depth.vert.glsl", "shadow/depth.frag.glsl"
 DEPTH = Raster(VERT, FRAG)
-DEPTH_MASKED = Raster(VERT, FRAG, defines={"ALPHA_MASK": 1, "MATERIAL_TEXTURES": BASE_COLOR_SLOT})
 STATE = RasterState(depth_test="lequal", polygon_offset=(0.0, 4.0))
 """Both faces cast: a single-sided wall shades too. The offset covers rounding; slopes are handled
 by the receiver's shift along its normal (glsl/lib/shadow.glsl)."""
@@ -237,20 +238,31 @@ def _draw_casters(
     def draw_opaque(enc: Encoder) -> None:
         scene.draw_positions(enc, seen_by=viewer, dynamic=dynamic)
 
-    masked = scene.batches(MASKED, dynamic)
-
-    def draw_masked(enc: Encoder) -> None:
-        scene.draw(enc, masked, texture_mask=BASE_COLOR_SLOT, cull=False, seen_by=viewer)
-
-    reads = {"Instances": scene.instances, "ShadowViews": maps.reads()["ShadowViews"]}
+    views = {"ShadowViews": maps.reads()["ShadowViews"]}
+    reads = {"Instances": scene.instances, **views}
     params = {"ShadowPass": pack(layouts().block("ShadowPass"), view=np.uint32(number))}
     g.raster(
         DEPTH, name, depth=target, reads=reads, params=params, state=STATE,
         clear_depth=None if dynamic else 1.0, draw=draw_opaque,
     )  # fmt: skip
-    if masked:
-        reads["Materials"] = scene.materials
+    masked: dict[Raster, list[Batch]] = defaultdict(list)
+    for batch in scene.batches(MASKED, dynamic):
+        mask = _masked_textures(batch)
+        shader = material_shader(VERT, FRAG, batch, {"ALPHA_MASK": 1}, texture_mask=mask)
+        masked[shader].append(batch)
+    for shader, batches in masked.items():
+
+        def draw_masked(enc: Encoder, batches: list[Batch] = batches) -> None:
+            mask = _masked_textures(batches[0])
+            scene.draw(enc, batches, texture_mask=mask, cull=False, seen_by=viewer)
+
         g.raster(
-            DEPTH_MASKED, f"{name}.masked", depth=target, reads=reads, params=params, state=STATE,
+            shader, f"{name}.masked", depth=target, reads={**scene.reads(), **views},
+            writes=scene.materials.writes(batches), params=params | scene.params(), state=STATE,
             draw=draw_masked,
         )  # fmt: skip
+
+
+def _masked_textures(batch: Batch) -> int:
+    """MATERIAL_TEXTURES for the alpha test of a batch: the base colour alone in glTF's material."""
+    return batch.texture_mask if batch.definition.may_fail else BASE_COLOR_SLOT

@@ -1,13 +1,17 @@
-"""Materials and their textures, as glTF has them."""
+"""Materials and their textures: what glTF has, and what an artist's definition adds."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import math
+from dataclasses import dataclass, field, replace
 from typing import Literal, TypeAlias
 
 import numpy as np
 
+from elemental.core.errors import InputError
 from elemental.scene.arrays import ByteArray, FloatArray
+from elemental.scene.definitions import SHARED, STANDARD, MaterialDefinition, builtin
+from elemental.scene.parameters import ParameterValue
 
 Wrap: TypeAlias = Literal["repeat", "clamp", "mirror"]
 AlphaMode: TypeAlias = Literal["opaque", "mask", "blend"]
@@ -38,11 +42,14 @@ class TextureSlot:
 
 @dataclass
 class Material:
-    """glTF's metallic-roughness material.
+    """A material: glTF's metallic-roughness values, and what its `definition` makes of them.
 
     `base_color` (4,) float32 linear with opacity; `emissive` (3,) float32 linear radiance in nit,
     strength included. Textures multiply their factors: base colour and emissive textures are sRGB
     encoded, the others linear (metallic in B, roughness in G, occlusion in R).
+
+    `values` are those of the definition's own parameters that are not at their default, `textures`
+    its own textures that are not plain.
     """
 
     name: str
@@ -60,9 +67,78 @@ class Material:
     alpha_mode: AlphaMode = "opaque"
     alpha_cutoff: float = 0.5
     double_sided: bool = False
-    unlit: bool = False
+    definition: MaterialDefinition = field(default_factory=lambda: builtin(STANDARD))
+    values: dict[str, ParameterValue] = field(default_factory=dict)
+    textures: dict[str, TextureSlot] = field(default_factory=dict)
+
+    @property
+    def is_standard(self) -> bool:
+        """Whether it is glTF's own material, lit."""
+        return self.definition.is_standard
+
+    @property
+    def unlit(self) -> bool:
+        """Whether it shows its base colour, whatever the light (KHR_materials_unlit)."""
+        return self.definition.is_unlit
+
+    @property
+    def emission_max(self) -> float:
+        """Bound of the radiance that leaves the surface by itself, nit; what is more is cut."""
+        if not self.definition.emits:
+            return 0.0
+        return math.prod(max(_numbers(self.value(name))) for name in self.definition.emits)
 
     @property
     def emits(self) -> bool:
         """Whether any radiance leaves the surface by itself."""
-        return bool(self.emissive.max() > 0.0)
+        return self.emission_max > 0.0
+
+    def value(self, name: str) -> ParameterValue:
+        """A parameter that is no texture, as it is now."""
+        if name in SHARED:
+            held = getattr(self, name)
+            if isinstance(held, np.ndarray):
+                return tuple(float(part) for part in held)
+            return float(held)
+        parameter = self.definition.parameter(name)
+        assert parameter is not None, f"{self.definition.name} has no parameter {name}"
+        return self.values.get(name, parameter.default)
+
+    def with_definition(self, definition: MaterialDefinition) -> Material:
+        """This material by another definition, with those values that it knows."""
+        values = {}
+        for name, value in self.values.items():
+            try:
+                values[name] = definition.check_value(name, value)
+            except InputError:
+                continue
+        names = {p.name for p in definition.textures}
+        textures = {name: slot for name, slot in self.textures.items() if name in names}
+        return replace(self, definition=definition, values=values, textures=textures)
+
+    def with_value(self, name: str, value: object) -> Material:
+        """This material with another value of a parameter that is no texture.
+
+        Raises InputError(definition, name, reason) for a name or a value that can't be.
+        """
+        checked = self.definition.check_value(name, value)
+        if name not in SHARED:
+            return replace(self, values={**self.values, name: checked})
+        held = np.array(checked, np.float32) if isinstance(checked, tuple) else checked
+        changed: dict[str, object] = {name: held}
+        return replace(self, **changed)  # type: ignore[arg-type]  # the names are its fields'
+
+    def with_texture(self, name: str, slot: TextureSlot) -> Material:
+        """This material with an image for one of its texture parameters."""
+        if name not in SHARED:
+            return replace(self, textures={**self.textures, name: slot})
+        changed: dict[str, object] = {name: slot}
+        return replace(self, **changed)  # type: ignore[arg-type]  # the names are its fields'
+
+
+def _numbers(value: ParameterValue) -> tuple[float, ...]:
+    """The numbers of a value, of an rgba its colour's."""
+    if isinstance(value, tuple):
+        return value[:3]
+    assert not isinstance(value, str)
+    return (float(value),)

@@ -9,7 +9,7 @@ import pytest
 
 from elemental.scene.area_lights import FACES_MAX, area_lights, parallelograms
 from elemental.scene.model import Scene, TextureSlot
-from gpu.rig import at, mesh, scene, sun, vector
+from gpu.rig import UNLIT, at, mesh, scene, sun, vector
 from gpu.voxel.scenes import colored, glowing, part, turned
 from shapes import Shape, box, quad, sphere
 
@@ -78,7 +78,7 @@ def test_other_shapes_are_left_to_the_voxels(shape: Shape) -> None:
 def test_textured_masked_and_unlit_emitters_are_left_to_the_voxels() -> None:
     assert area_lights(of(quad(), emissive_texture=TextureSlot(0))) == []
     assert area_lights(of(quad(), alpha_mode="mask")) == []
-    assert area_lights(of(quad(), unlit=True)) == []
+    assert area_lights(of(quad(), definition=UNLIT)) == []
 
 
 def test_an_emitter_that_the_sun_outshines_is_left_to_the_voxels() -> None:

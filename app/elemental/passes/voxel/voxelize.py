@@ -3,12 +3,15 @@ Pipeline"]"""
 
 from __future__ import annotations
 
+from collections import defaultdict
+
 from elemental.core.layout import layouts, pack
 from elemental.gpu.encode import Encoder
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import AnyBuffer, BufferHandle
 from elemental.gpu.shaders import Compute, Raster
 from elemental.gpu.state import RasterState
+from elemental.passes.material_table import material_shader
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.scene_pack import BASE_COLOR_SLOT, SLOTS, Batch, slot_mask
 from elemental.passes.voxel.octree import Survey
@@ -23,6 +26,7 @@ VARIANTS = {
     mask: Raster(VERT, FRAG, defines={"MATERIAL_TEXTURES": mask})
     for mask in (0, BASE_COLOR_SLOT, COLOR_SLOTS)
 }
+"""Of glTF's material, by MATERIAL_TEXTURES."""
 BOTH_SIDES = RasterState(cull="none", depth_test="none", depth_write=False)
 ALPHA_MODES: tuple[AlphaMode, ...] = ("opaque", "mask", "blend")
 
@@ -55,6 +59,12 @@ def variant_of(batch: Batch) -> int:
     return next(mask for mask in VARIANTS if not batch.texture_mask & COLOR_SLOTS & ~mask)
 
 
+def variant_shader(batch: Batch) -> Raster:
+    """The program that a batch is drawn with."""
+    mask = variant_of(batch)
+    return material_shader(VERT, FRAG, batch, texture_mask=mask, uv_transforms=True)
+
+
 def voxelize(g: Graph, scene: GpuScene, octree: Survey) -> BufferHandle:
     """The fragment queue of the whole scene, of this frame alone."""
     g.copy_buffer(octree.empty_state, octree.state)
@@ -80,16 +90,18 @@ def append_fragments(
     that the surface separates its sides: no path of face-connected empty voxels crosses it. What
     the queue can't hold is counted, not written.
     """
-    batches_of = {mask: _batches(scene, mask, dynamic) for mask in VARIANTS}
-    if not any(batches_of.values()):
+    groups: dict[Raster, list[Batch]] = defaultdict(list)
+    for batch in sorted(scene.batches(ALPHA_MODES, dynamic), key=variant_of):
+        groups[variant_shader(batch)].append(batch)
+    if not groups:
         return
     select_triangles(g, scene, octree, dynamic)
     side = octree.grid.resolution
     what = {None: "", True: "moving.", False: "still."}[dynamic]
-    for mask, shader in VARIANTS.items():
-        batches = batches_of[mask]
-        if not batches:
-            continue
+    for shader, batches in groups.items():
+        mask = variant_of(batches[0])
+        definition = batches[0].definition
+        material = "" if definition.is_standard else f".{definition.name}"
         for axis, name in enumerate("xyz"):
 
             def draw(
@@ -99,16 +111,20 @@ def append_fragments(
 
             g.raster(
                 shader,
-                f"voxelize.{what}{name}.textures{mask}",
+                f"voxelize.{what}{name}.textures{mask}{material}",
                 size=(side, side),
                 state=BOTH_SIDES,
-                reads={"Instances": scene.instances, "Materials": scene.materials},
-                writes={"State": octree.state, "Fragments": fragments},
-                params={**octree.params, "Voxelize": pack(layouts().block("Voxelize"), axis=axis)},
+                reads=scene.reads(),
+                writes={
+                    "State": octree.state,
+                    "Fragments": fragments,
+                    **scene.materials.writes(batches),
+                },
+                params={
+                    **octree.params,
+                    **scene.params(),
+                    "Voxelize": pack(layouts().block("Voxelize"), axis=axis),
+                },
                 draw=draw,
                 uses=(scene.lists.commands, scene.lists.indices),
             )
-
-
-def _batches(scene: GpuScene, mask: int, dynamic: bool | None) -> list[Batch]:
-    return [b for b in scene.batches(ALPHA_MODES, dynamic) if variant_of(b) == mask]

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from elemental.scene.definitions import STANDARD, builtin
+from elemental.scene.definitions import UNLIT as UNLIT_MATERIAL
 from elemental.scene.gltf.container import Document
 from elemental.scene.gltf.fields import FLOAT32_MAX, Field
 from elemental.scene.gltf.textures import Textures
@@ -43,7 +45,7 @@ def _read_material(field: Field, index: int, textures: Textures) -> Material:
         alpha_mode=field.choice_or("alphaMode", ALPHA_MODES["OPAQUE"], ALPHA_MODES),
         alpha_cutoff=field.number_or("alphaCutoff", 0.5, 0.0),
         double_sided=field.flag("doubleSided"),
-        unlit=field.extension(UNLIT) is not None,
+        definition=builtin(STANDARD if field.extension(UNLIT) is None else UNLIT_MATERIAL),
     )
     if material.alpha_mode == "opaque":
         material.base_color[3] = 1.0

@@ -1,0 +1,154 @@
+"""A scene's materials on the device: their rows, and the artist's code behind them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cache
+
+import numpy as np
+
+from elemental.core.layout import Block, layouts, pack
+from elemental.gpu.device import Device
+from elemental.gpu.graph import Graph
+from elemental.gpu.refs import Ref
+from elemental.gpu.shaders import Define, Raster
+from elemental.passes import material_snippets, scene_pack
+from elemental.passes.material_snippets import MaterialSnippet
+from elemental.passes.scene_pack import Batch
+from elemental.scene.definitions import MaterialDefinition
+from elemental.scene.model import Material, Scene
+
+
+class MaterialTable:
+    """The storage block Materials, and the definitions in use.
+
+    The definitions that the scene's materials name are registered with the shader library, which
+    reloads them; `follow` then takes over what became of their parameters.
+    """
+
+    def __init__(self, device: Device, scene: Scene) -> None:
+        self._device, self._scene = device, scene
+        self._revisions: dict[str, int] = {}
+        for number, material in enumerate(scene.materials):
+            scene.materials[number] = self._adopt(material)
+        packed = scene_pack.pack_materials(scene)
+        self.rows = device.buffer("scene.materials", packed, category="meshes", dynamic=True)
+        none = np.zeros(max(len(packed), 1), "<u4")
+        self._faults = device.buffer("scene.material_faults", none, "meshes", dynamic=True)
+        self._faulty = none
+        self._time_s = 0.0
+        self._block = self._pack_frame()
+
+    def _adopt(self, material: Material) -> Material:
+        """The material by the definition that the library has of its file."""
+        library, key = self._device.library, material.definition.key
+        library.add_snippet(key, MaterialSnippet(material.definition))
+        snippet = self._snippet(key)
+        self._revisions[key] = snippet.revision
+        if snippet.definition == material.definition:
+            return material
+        return material.with_definition(snippet.definition)
+
+    def _snippet(self, key: str) -> MaterialSnippet:
+        snippet = self._device.library.snippet(key)
+        assert isinstance(snippet, MaterialSnippet), "keys of definitions are their files"
+        return snippet
+
+    def _pack_frame(self) -> Block:
+        return pack(layouts().block("MaterialFrame"), time_s=np.float32(self._time_s))
+
+    def set(self, index: int, material: Material) -> None:
+        """Replace a material, here and in the scene."""
+        self._scene.materials[index] = self._adopt(material)
+        packed = scene_pack.pack_materials(self._scene)[index]
+        self.rows.write(packed.tobytes(), index * packed.nbytes)
+        self._faults.write(np.zeros(1, "<u4"), index * 4)
+
+    def is_animated(self, index: int) -> bool:
+        """Whether a material changes with time."""
+        return self._scene.materials[index].definition.animated
+
+    def follow(self, time_s: float) -> tuple[list[int], list[int]]:
+        """Take over the time of a frame: materials that (look otherwise at it, were edited)."""
+        passing: list[int] = []
+        if time_s != self._time_s:
+            self._time_s = time_s
+            self._block = self._pack_frame()
+            passing = [n for n in range(len(self._scene.materials)) if self.is_animated(n)]
+        stale = [k for k, seen in self._revisions.items() if self._snippet(k).revision != seen]
+        if not stale:
+            return passing, []
+        edited = [n for n, m in enumerate(self._scene.materials) if m.definition.key in stale]
+        for index in edited:
+            self.set(index, self._scene.materials[index])
+        return passing, edited
+
+    def reads(self) -> dict[str, Ref]:
+        """What lib/material.glsl reads, but for textures."""
+        return {"Materials": self.rows}
+
+    def writes(self, batches: Sequence[Batch]) -> dict[str, Ref]:
+        """What the programs of batches of one definition write beside their targets."""
+        fails = bool(batches) and batches[0].definition.may_fail
+        return {"MaterialFaults": self._faults} if fails else {}
+
+    def params(self) -> dict[str, Block]:
+        """The uniform blocks of lib/material.glsl."""
+        return {"MaterialFrame": self._block}
+
+    def watch_faults(self, g: Graph) -> None:
+        """Have the frame tell, some frames later, which materials wrote what is no number."""
+        if any(material.definition.may_fail for material in self._scene.materials):
+            g.read_later(self._faults, self._told)
+
+    def _told(self, raw: bytes) -> None:
+        self._faulty = np.frombuffer(raw, "<u4")
+
+    @property
+    def faulty(self) -> list[int]:
+        """Materials that wrote infinities or what is no number, as far as the GPU has told."""
+        return np.flatnonzero(self._faulty[: len(self._scene.materials)]).tolist()
+
+    def release(self) -> None:
+        """Free the buffers."""
+        self.rows.release()
+        self._faults.release()
+
+
+def material_shader(
+    vert: str,
+    frag: str,
+    batch: Batch,
+    defines: Mapping[str, int] | None = None,
+    *,
+    texture_mask: int | None = None,
+    uv_transforms: bool | None = None,
+) -> Raster:
+    """A program whose fragments evaluate a batch's material: frag includes lib/material.glsl.
+
+    Its pass takes `GpuScene.reads()`, `params()` and `materials.writes([batch])`, and draws by
+    `GpuScene.draw`. ``defines`` come on top of the material's; ``texture_mask``
+    and ``uv_transforms`` replace the batch's own.
+    """
+    mask = batch.texture_mask if texture_mask is None else texture_mask
+    transforms = batch.uv_transforms if uv_transforms is None else uv_transforms
+    more = tuple(defines.items()) if defines else ()
+    return _shader(vert, frag, batch.definition, mask, transforms, more)
+
+
+@cache
+def _shader(
+    vert: str,
+    frag: str,
+    definition: MaterialDefinition,
+    texture_mask: int,
+    uv_transforms: bool,
+    more: tuple[tuple[str, int], ...],
+) -> Raster:
+    defines: dict[str, Define] = {
+        "MATERIAL_TEXTURES": texture_mask,
+        "MATERIAL_UV_TRANSFORMS": int(uv_transforms),
+        "MATERIAL_FAULTS": int(definition.may_fail),
+        **dict(more),
+    }
+    return Raster(vert, frag, defines=defines, snippets={material_snippets.NAME: definition.key})

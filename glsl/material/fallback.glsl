@@ -1,0 +1,4 @@
+// Stands for a material that does not compile: loud, in every pass alike.
+void material(inout Surface s, MaterialInput m, Parameters p) {
+    s = fallback_surface(m.position_ws);
+}
