@@ -15,9 +15,10 @@ from elemental.gpu.shaders import Raster
 from elemental.gpu.state import RasterState
 from elemental.passes.gbuffer import VERT, VIEWER, GBuffer
 from elemental.passes.light_cells import ALL_LIGHTS, NO_CELLS, VIEW_CELLS, LightCells
+from elemental.passes.material_pack import ALL_SLOTS
 from elemental.passes.material_table import material_shader
 from elemental.passes.scene_gpu import GpuScene
-from elemental.passes.scene_pack import ALL_SLOTS, BLEND, Batch
+from elemental.passes.scene_pack import BLEND, Batch
 from elemental.passes.shadow import ShadowMaps
 from elemental.passes.sky import Sky
 

@@ -12,7 +12,7 @@ from elemental.gpu.device import Device
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import Ref
 from elemental.gpu.shaders import Define, Raster
-from elemental.passes import material_snippets, scene_pack
+from elemental.passes import material_pack, material_snippets
 from elemental.passes.material_snippets import MaterialSnippet
 from elemental.passes.scene_pack import Batch
 from elemental.scene.definitions import MaterialDefinition
@@ -31,7 +31,7 @@ class MaterialTable:
         self._revisions: dict[str, int] = {}
         for number, material in enumerate(scene.materials):
             scene.materials[number] = self._adopt(material)
-        packed = scene_pack.pack_materials(scene)
+        packed = material_pack.pack_materials(scene)
         self.rows = device.buffer("scene.materials", packed, category="meshes", dynamic=True)
         none = np.zeros(max(len(packed), 1), "<u4")
         self._faults = device.buffer("scene.material_faults", none, "meshes", dynamic=True)
@@ -60,7 +60,7 @@ class MaterialTable:
     def set(self, index: int, material: Material) -> None:
         """Replace a material, here and in the scene."""
         self._scene.materials[index] = self._adopt(material)
-        packed = scene_pack.pack_materials(self._scene)[index]
+        packed = material_pack.pack_materials(self._scene)[index]
         self.rows.write(packed.tobytes(), index * packed.nbytes)
         self._faults.write(np.zeros(1, "<u4"), index * 4)
 

@@ -8,7 +8,8 @@ from elemental.gpu.device import Device
 from elemental.gpu.formats import RGBA8, SRGB8_A8
 from elemental.gpu.refs import Sampled
 from elemental.gpu.resources import Texture, mip_count
-from elemental.passes.scene_pack import SLOTS, Batch, OwnTexture
+from elemental.passes.material_pack import SLOTS, OwnTexture
+from elemental.passes.scene_pack import Batch
 from elemental.scene.model import Scene
 from elemental.scene.model import Texture as Image
 from elemental.scene.parameters import PLAIN_TEXTURES

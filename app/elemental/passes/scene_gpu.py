@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,22 +11,16 @@ from elemental.gpu.device import Device
 from elemental.gpu.encode import Encoder
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import Ref
-from elemental.gpu.resources import Buffer, VertexInput
-from elemental.passes import scene_pack
+from elemental.gpu.resources import Buffer
+from elemental.passes import material_pack, scene_pack
 from elemental.passes.culling import Culling
 from elemental.passes.instance_table import Change, InstanceTable
+from elemental.passes.material_pack import ALL_SLOTS, CATEGORIES, SLOTS
 from elemental.passes.material_table import MaterialTable
 from elemental.passes.material_textures import MaterialTextures
+from elemental.passes.placed import Placed
 from elemental.passes.scene_deform import Deformer
-from elemental.passes.scene_pack import (
-    ALL_SLOTS,
-    BLEND,
-    CATEGORIES,
-    OPAQUE,
-    SLOTS,
-    Array,
-    Batch,
-)
+from elemental.passes.scene_pack import BLEND, OPAQUE, Array, Batch
 from elemental.passes.triangle_lists import TriangleLists
 from elemental.scene.area_lights import AreaLight
 from elemental.scene.evaluate import Pose
@@ -172,9 +165,9 @@ class GpuScene:
         before = self._scene.materials[index]
         self.materials.set(index, material)
         material = self._scene.materials[index]
-        self._note_material(index, scene_pack.opacity(before) != scene_pack.opacity(material))
+        self._note_material(index, material_pack.opacity(before) != material_pack.opacity(material))
         restless = self._repaint([index])
-        if restless or scene_pack.draw_state(before) != scene_pack.draw_state(material):
+        if restless or material_pack.draw_state(before) != material_pack.draw_state(material):
             self._release_order()
             self._arrange()
 
@@ -305,20 +298,3 @@ class GpuScene:
             if batches:
                 count, first = sum(batch.count for batch in batches), batches[0].first
                 encoder.draw_indirect(placed.positions_only, placed.commands, count, first)
-
-
-@dataclass(frozen=True)
-class Placed:
-    """Draw commands, the instance numbers that they index, and the vertex inputs over both."""
-
-    commands: Buffer
-    order: Buffer
-    vertices: VertexInput
-    positions_only: VertexInput
-
-    def release(self) -> None:
-        """Free them."""
-        self.vertices.release()
-        self.positions_only.release()
-        self.commands.release()
-        self.order.release()

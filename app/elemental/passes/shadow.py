@@ -24,9 +24,10 @@ from elemental.gpu.resources import Buffer, Texture
 from elemental.gpu.shaders import Raster
 from elemental.gpu.state import RasterState
 from elemental.passes.culling import in_frustum
+from elemental.passes.material_pack import BASE_COLOR_SLOT
 from elemental.passes.material_table import material_shader
 from elemental.passes.scene_gpu import GpuScene
-from elemental.passes.scene_pack import BASE_COLOR_SLOT, MASKED, Array, Batch
+from elemental.passes.scene_pack import MASKED, Array, Batch
 from elemental.passes.shadow_plan import ShadowPlan, ShadowSettings, plan_shadows
 from elemental.scene.model import Camera, Light
 

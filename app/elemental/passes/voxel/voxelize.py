@@ -11,9 +11,10 @@ from elemental.gpu.graph import Graph
 from elemental.gpu.refs import AnyBuffer, BufferHandle
 from elemental.gpu.shaders import Compute, Raster
 from elemental.gpu.state import RasterState
+from elemental.passes.material_pack import BASE_COLOR_SLOT, SLOTS, slot_mask
 from elemental.passes.material_table import material_shader
 from elemental.passes.scene_gpu import GpuScene
-from elemental.passes.scene_pack import BASE_COLOR_SLOT, SLOTS, Batch, slot_mask
+from elemental.passes.scene_pack import Batch
 from elemental.passes.voxel.octree import Survey
 from elemental.scene.model import AlphaMode
 
