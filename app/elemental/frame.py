@@ -33,6 +33,7 @@ from elemental.passes.shade import shade
 from elemental.passes.shadow import ShadowMaps, update_shadows
 from elemental.passes.shadow_plan import ShadowSettings
 from elemental.passes.sky import Sky
+from elemental.passes.ssao import SSAO_VIEWS, occlude, ssao_view
 from elemental.passes.views import CHANNELS, LIGHT_VIEWS, light_view, surface_view
 from elemental.passes.voxel import sizing
 from elemental.passes.voxel.grid import Grid
@@ -52,6 +53,7 @@ VIEWS: Mapping[str, str] = {
     "final": "the finished picture",
     "scene_color": "scene-referred linear radiance: no exposure, no post",
     **CHANNELS,
+    **SSAO_VIEWS,
     **LIGHT_VIEWS,
     "diffuse_gi": "indirect irradiance / pi, linear",
     "specular_gi": "indirect radiance along the mirrored eye vector, linear",
@@ -223,8 +225,12 @@ class Renderer:
         cells = cull_to_view(g, view, shadows, camera, self.size)
         if view_name in LIGHT_VIEWS:
             return light_view(g, view, gb, shadows, view_name, cells)
+        voxel_m = octree.grid.voxel_m if octree is not None else None
+        if view_name in SSAO_VIEWS:
+            return ssao_view(g, view, gb, s, voxel_m)
         diffuse_gi = specular = None
         if octree is not None:
+            occlude(g, view, gb, s, voxel_m)
             if view_name in STEP_VIEWS:
                 split, block = self._cone_split, self._area_block
                 return step_view(g, view, gb, octree, sky, block, split, view_name)

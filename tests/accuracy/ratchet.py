@@ -34,6 +34,7 @@ SETTINGS = (
     "gi.area_lights=true",
     "gi.specular=true",
     "gi.specular_adaptive=true",
+    "ao.intensity=0",
     "shadow.resolution=1024",
 )
 """Stated, so that another default changes nothing here."""
