@@ -42,7 +42,7 @@ from elemental.passes.voxel.octree import Octree
 from elemental.passes.voxel.view import VOXEL_VIEWS, voxel_view
 from elemental.scene.area_lights import AreaLight, area_lights, followed
 from elemental.scene.deform import posed
-from elemental.scene.evaluate import Pose, evaluate
+from elemental.scene.evaluate import LastPose, Pose
 from elemental.scene.model import Camera, Light, Material, Region, Scene
 from elemental.scene.volumes import blend
 from elemental.settings import Settings
@@ -103,6 +103,8 @@ class Renderer:
         self.size = size
         self._area_lights = self._choose_area_lights()
         self._area_block = pack_area_lights(self._area_lights)
+        self._followed: Pose | None = None
+        self._last_pose = LastPose()
         self._meshes = GpuScene(device, scene, self._area_lights)
         self._shadows = ShadowMaps(device, _shadow_settings(settings))
         self._sky = Sky(device)
@@ -128,6 +130,7 @@ class Renderer:
         if self._area_lights or material.emits:
             self._area_lights = self._choose_area_lights()
             self._area_block = pack_area_lights(self._area_lights)
+            self._followed = None
             self._meshes.set_area_lights(self._area_lights)
         brightest = sizing.max_emission(self.scene, self._area_lights)
         if self._voxels is not None and brightest > self._voxels.octree.max_emission:
@@ -150,13 +153,14 @@ class Renderer:
 
     def _move(self, time_s: float, pose: Pose | None) -> list[Light]:
         """Bring the scene to its pose at a time, or to the given one. Returns its lights."""
-        if pose is None and self.scene.motion is not None:
-            pose = evaluate(self.scene, time_s)
+        if pose is None:
+            pose = self._last_pose.at(self.scene, time_s)
         self._meshes.update(pose, time_s)
         if pose is None:
             return self.scene.lights
-        if self._area_lights:
+        if self._area_lights and pose is not self._followed:
             self._area_block = pack_area_lights(followed(self.scene, self._area_lights, pose))
+            self._followed = pose
         return pose.lights
 
     def render(
@@ -169,7 +173,8 @@ class Renderer:
     ) -> Frame:
         """One frame as seen by ``camera``; ``view`` is one of VIEWS.
 
-        What moves is where it is at ``time_s``, or as a ``pose`` says.
+        What moves is where it is at ``time_s``, or as a ``pose`` says. Poses and lights are taken
+        for what they were while they are the same objects: replace them, don't edit them.
         """
         lights = self._move(time_s, pose)
         voxels = self._prepare_voxels(view, time_s)

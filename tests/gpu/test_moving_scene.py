@@ -8,8 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from elemental import frame
 from elemental.gpu.device import Device
 from elemental.gpu.resources import Buffer
+from elemental.passes.instance_table import InstanceTable
+from elemental.scene import evaluate as evaluation
 from elemental.scene.deform import posed
 from elemental.scene.model import Instance
 from gpu.moving import (
@@ -100,6 +103,42 @@ def test_shadow_maps_follow_what_they_see(device: Device, renderers: Any) -> Non
     assert drawn(10.0) == {"shadow.0.spot.0"}  # left it
     assert drawn(11.0) == set()
     assert drawn(20.0) == {"shadow.1.spot.0"}
+
+
+def test_nothing_is_evaluated_while_time_stands_still(
+    renderers: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """But for what was edited meanwhile: lights and area lights."""
+    world = stage()
+    renderer = renderers(world)
+    asked: list[str] = []
+    for module, name in ((evaluation, "evaluate"), (frame, "pack_area_lights")):
+        made = getattr(module, name)
+        monkeypatch.setattr(
+            module, name, lambda *args, made=made, name=name: (asked.append(name), made(*args))[1]
+        )
+    follow = InstanceTable.follow
+    monkeypatch.setattr(
+        InstanceTable, "follow", lambda *args: (asked.append("follow"), follow(*args))[1]
+    )
+    everything = ["evaluate", "follow", "pack_area_lights"]
+    renderer.render(EYE, 0.4, 0)
+    assert asked == everything
+    renderer.render(EYE, 0.5, 1)
+    assert asked == everything * 2
+    before = picture(renderer, 0.5)  # in which they come to rest
+    assert asked == [*everything * 2, "follow"]
+    picture(renderer, 0.5)
+    assert asked == [*everything * 2, "follow"]
+    world.lights[0] = replace(world.lights[0], intensity=3.0)
+    shown = picture(renderer, 0.5)
+    assert (shown != before).mean() > 0.1
+    np.testing.assert_array_equal(shown, picture(renderers(world), 0.5))
+    asked.clear()
+    renderer.set_material(3, replace(world.materials[3], emissive=vector(1, 2, 9)))
+    shown = picture(renderer, 0.5)
+    assert asked == ["pack_area_lights"] * 2
+    np.testing.assert_array_equal(shown, picture(renderers(world), 0.5))
 
 
 def test_what_comes_into_view_is_drawn(renderers: Any) -> None:

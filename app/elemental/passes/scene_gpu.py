@@ -74,6 +74,8 @@ class GpuScene:
         if scene_pack.bending(scene):
             self._deformer = Deformer(device, scene, geometry, self.positions, self._surface)
         self._textures = MaterialTextures(device, scene)
+        self._pose: Pose | None = None
+        self._rests = False
         self._arrange()
 
     def _upload(self, name: str, values: Array, dynamic: bool = False) -> Buffer:
@@ -131,6 +133,7 @@ class GpuScene:
 
         Uploads what differs, the rows of the changed instances at once. Materials that change with
         time change the instances that bear them.
+        The very pose of a frame that moved nothing is not looked at again.
         """
         passing, edited = self.materials.follow(time_s)
         for index in (*passing, *edited):
@@ -141,9 +144,10 @@ class GpuScene:
             self._arrange()
         self.changes = list(self._material_changes.values())
         self._material_changes.clear()
-        if pose is not None and len(pose.instances):
+        if pose is not None and len(pose.instances) and not (pose is self._pose and self._rests):
             bent = self._deformer.follow(pose) if self._deformer is not None else []
             moved, rows = self._table.follow(pose, bent)
+            self._pose, self._rests = pose, not moved
             if rows:
                 table = self._table.rows[rows.start : rows.stop]
                 self.instances.write(table, rows.start * table.itemsize)

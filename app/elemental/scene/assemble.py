@@ -143,6 +143,7 @@ def _adopt(scene: Scene, model: Scene) -> None:
     scene.materials += [_shifted_material(m, first_texture) for m in model.materials]
     scene.meshes += [_shifted_mesh(mesh, first_material) for mesh in model.meshes]
     scene.animations += [name for name in model.animations if name not in scene.animations]
+    scene.hidden += model.hidden
     scene.warnings += model.warnings
     scene.notes += model.notes
 

@@ -15,6 +15,9 @@ from elemental.scene.placement import forward, rigid, singular
 PARALLEL_COSINE = 1.0 - 1e-9
 """Quaternions with a larger dot product are interpolated along the chord, which is as exact."""
 
+SHORTEST_QUATERNION = 1e-9
+"""Of keys of length 1: what is shorter is rounding."""
+
 
 @dataclass(frozen=True)
 class Pose:
@@ -71,6 +74,28 @@ def evaluate(scene: Scene, time_s: float) -> Pose:
     return Pose(
         np.array(numbers, np.int64), worlds, visible, joints, weights, lights, cameras
     )  # fmt: skip
+
+
+class LastPose:
+    """The pose of a scene that is asked for again and again while time stands still."""
+
+    def __init__(self) -> None:
+        self._time_s: float | None = None
+        self._lights: list[Light] = []
+        self._pose: Pose | None = None
+
+    def at(self, scene: Scene, time_s: float) -> Pose | None:
+        """The scene's pose, the very object as before where time and the scene's lights are the
+        same; None where nothing can move."""
+        if scene.motion is None:
+            return None
+        same = len(self._lights) == len(scene.lights) and all(
+            was is light for was, light in zip(self._lights, scene.lights, strict=True)
+        )
+        if self._pose is None or time_s != self._time_s or not same:
+            self._time_s, self._lights = time_s, list(scene.lights)
+            self._pose = evaluate(scene, time_s)
+        return self._pose
 
 
 def placed_camera(scene: Scene, camera: Camera, time_s: float) -> Camera:
@@ -142,6 +167,8 @@ def sample(tracks: Tracks, time_s: float) -> F64:
     if cubic:
         leaving, arriving = tracks.values[:, k, 2] * width, tracks.values[:, k + 1, 0] * width
         value = _hermite(keys[:, k], leaving, keys[:, k + 1], arriving, s)
+        if tracks.path == "rotation":
+            value = _turning(value, keys[:, k] if s < 0.5 else keys[:, k + 1])
     elif tracks.path == "rotation":
         value = slerp(keys[:, k], keys[:, k + 1], s)
     else:
@@ -172,6 +199,12 @@ def _hermite(p0: F64, m0: F64, p1: F64, m1: F64, s: float) -> F64:
         + (s**3 - s**2) * m1
     )
     return point
+
+
+def _turning(quaternions: F64, nearer: F64) -> F64:
+    """(n, 4), where they have a direction; where a curve passes through 0, the nearer key's."""
+    length = np.linalg.norm(quaternions, axis=1, keepdims=True)
+    return np.where(length > SHORTEST_QUATERNION, quaternions, nearer)
 
 
 def _light_at(light: Light, nodes: _Nodes) -> Light:

@@ -62,6 +62,7 @@ def settle(scene: Scene) -> None:
             low, high = np.min(lows, axis=0), np.max(highs, axis=0)
             scene.extent = low.astype(np.float32), high.astype(np.float32)
     if unseen:
+        scene.hidden += len(unseen)
         scene.notes.append(f"{scene.path}: {len(unseen)} meshes are left out, which never show")
     for pose in poses:
         _check_finite(scene, pose)

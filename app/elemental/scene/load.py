@@ -89,7 +89,10 @@ def _drop_unused_meshes(scene: Scene) -> None:
 
 def _check_drawable(scene: Scene) -> None:
     if scene.triangle_count == 0:
-        raise InputError(scene.path, "", "the scene has no triangles")
+        reason = "the scene has no triangles"
+        if scene.hidden:
+            reason = f"nothing shows: {scene.hidden} meshes are scaled to 0 or hidden at all times"
+        raise InputError(scene.path, "", reason)
     with np.errstate(over="ignore", invalid="ignore"):
         low, high = scene.bounds()
     if not (np.isfinite([low, high]).all() and max(-low.min(), high.max()) <= LARGEST_COORDINATE):

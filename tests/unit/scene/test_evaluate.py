@@ -78,6 +78,17 @@ def test_a_cubic_track_is_the_parabola_whose_slopes_it_has() -> None:
         np.testing.assert_allclose(got, [[t * t] * 3], atol=1e-12)
 
 
+def test_a_cubic_turn_through_0_takes_the_nearer_key() -> None:
+    """From q to -q without tangents the curve has no direction half way; glTF allows that."""
+    turn = np.array([0.0, 0.6, 0.0, 0.8])
+    keys = [[np.zeros(4), turn, np.zeros(4)], [np.zeros(4), -turn, np.zeros(4)]]
+    made = tracks(keys, (0.0, 1.0), "rotation", interpolation="cubic")
+    for t in (0.0, 0.25, 0.5, 0.75):
+        matrix = composed(np.zeros((1, 3)), sample(made, t), np.ones((1, 3)))
+        wanted = composed(np.zeros((1, 3)), turn[None], np.ones((1, 3)))
+        np.testing.assert_allclose(matrix, wanted, atol=1e-12)
+
+
 def test_a_quarter_turn_is_even_and_takes_the_shorter_way() -> None:
     ends = [about(UNIT_Z, 0.3), -about(UNIT_Z, 0.3 + math.pi / 2)]
     turn = tracks(ends, (0.0, 2.0), "rotation")

@@ -94,6 +94,15 @@ keys = [{ time = 0 },
 """
 
 
+@pytest.mark.parametrize("key", ["scale = 0", "visible = false"])
+def test_a_scene_that_never_shows_is_named_as_such(tmp_path: Path, key: str) -> None:
+    motion = f'[[motions]]\nmodel = "still"\nkeys = [{{time = 0, {key}}}, {{time = 1, {key}}}]'
+    with pytest.raises(InputError) as caught:
+        load(tmp_path, f'[[models]]\nfile = "still.glb"\n{motion}')
+    reason = "nothing shows: 1 meshes are scaled to 0 or hidden at all times"
+    assert str(caught.value) == f"{tmp_path / 'scene.toml'}: {reason}"
+
+
 def test_keys_move_turn_scale_and_hide(tmp_path: Path) -> None:
     scene = load(tmp_path, f'{PLACED}[[motions]]\nmodel = "ball"\n{KEYS}')
     place = matrices(scene, evaluate(scene, 1.0))["box"]

@@ -63,6 +63,7 @@ class Placing:
                 node.field.warn("has a skin, but its mesh no JOINTS_0; the skin is ignored")
             if flat:
                 self._document.report.count("meshes are left out, whose nodes have a scale of 0")
+                self._scene.hidden += 1
                 continue
             world = node.world_from_local
             if node.index in self._rig.morphing:
