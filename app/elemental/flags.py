@@ -19,6 +19,8 @@ MAX_COORDINATE_M = 1e9
 """Farthest camera; beyond it 32-bit positions hold no scene."""
 
 VECTOR_FLAGS = frozenset({"--eye", "--target"})
+REMOTE_PORT, OSC_PORT = 8012, 8013
+"""Where ``--remote`` and ``--osc`` listen unless told; free of well-known services [IANA]."""
 LISTS = ("views", "settings", "scenes", "cameras", "animations", "bindings")
 
 Command = Callable[[argparse.Namespace], None]
@@ -104,7 +106,19 @@ def _add_run_flags(parser: _Parser) -> None:
     parser.add_argument(
         "--fullscreen", action="store_true", help="cover the primary monitor (default: off)"
     )
-    parser.flag("--frames", "N", _whole(1, 10**9), None, "exit after N frames (default: never)")
+    flag = parser.flag
+    flag("--frames", "N", _whole(1, 10**9), None, "exit after N frames (default: never)")
+    for name, const, what in (("--remote", REMOTE_PORT, "HTTP"), ("--osc", OSC_PORT, "OSC")):
+        parser.add_argument(
+            name,
+            nargs="?",
+            metavar="PORT",
+            type=_port,
+            const=const,
+            help=f"let {what} drive the volumes, 0: any free port (default: off; alone: {const})",
+        )
+    text = "address that --remote and --osc listen on (default: 127.0.0.1, this machine alone)"
+    flag("--remote-host", "IP", str, None, text)
 
 
 def _add_bench_flags(parser: _Parser) -> None:
@@ -176,6 +190,16 @@ def _whole(lo: int, hi: int) -> Callable[[str], int]:
         return value
 
     return parse_whole
+
+
+_PORT = _whole(0, 65535)
+
+
+def _port(text: str) -> int:
+    try:
+        return _PORT(text)
+    except argparse.ArgumentTypeError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a port, 0 to 65535") from None
 
 
 def _number(lo: float, hi: float) -> Callable[[str], float]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,6 +23,9 @@ from elemental.ui.hud import Figures, draw_help, draw_hud, draw_message
 from elemental.ui.present import present
 from elemental.ui.window import Events, Window
 
+if TYPE_CHECKING:
+    from elemental.remote.server import Remote
+
 MESSAGE_S = 4.0
 """How long a message stays."""
 HIDDEN_WAIT_S = 0.1
@@ -30,13 +34,19 @@ HIDDEN_WAIT_S = 0.1
 
 @dataclass(frozen=True)
 class Run:
-    """The words of one ``elemental run``; ``size`` in pixels, ``frames`` None until closed."""
+    """The words of one ``elemental run``; ``size`` in pixels, ``frames`` None until closed.
+
+    ``remote`` and ``osc``: ports of the remote control, 0 for any, None without it.
+    """
 
     scene: str | None
     size: tuple[int, int]
     assignments: list[str]
     fullscreen: bool
     frames: int | None
+    remote: int | None = None
+    osc: int | None = None
+    remote_host: str | None = None
 
 
 def run(words: Run) -> None:
@@ -45,12 +55,33 @@ def run(words: Run) -> None:
     Raises InputError for a bad scene or setting and where no window can be had.
     """
     stage = set_stage(words.scene, words.assignments, Viewpoint(), words.size)
-    window = Window(words.size, f"{stage.scene.name} – elemental", words.fullscreen)
-    app = App(window, stage, words)
+    remote = _remote(words, stage)
     try:
-        app.loop()
+        window = Window(words.size, f"{stage.scene.name} – elemental", words.fullscreen)
+        app = App(window, stage, words)
+        app.remote = remote
+        try:
+            app.loop()
+        finally:
+            app.release()
     finally:
-        app.release()
+        if remote is not None:
+            remote.release()
+
+
+def _remote(words: Run, stage: Stage) -> Remote | None:
+    """The remote control that was asked for. Raises InputError."""
+    if words.remote is None and words.osc is None:
+        if words.remote_host is not None:
+            raise InputError("--remote-host", words.remote_host, "needs --remote or --osc")
+        return None
+    from elemental.remote.server import LOOPBACK, Remote  # noqa: PLC0415 (asyncio: 50 ms)
+
+    remote = Remote(words.remote_host or LOOPBACK, words.remote, words.osc)
+    remote.update(stage.scene, stage.settings)
+    for line in remote.announcement:
+        print(line, flush=True)
+    return remote
 
 
 class App:
@@ -73,6 +104,7 @@ class App:
         self.shows_hud, self.shows_help = True, False
         self.frame: Frame | None = None
         self.problems: list[str] = []
+        self.remote: Remote | None = None
         self._wall_s = self._frame_s = self._cpu_ms = 0.0
         self._message, self._message_until = "", 0.0
 
@@ -95,6 +127,8 @@ class App:
         self._reload_shaders()
         began = time.perf_counter()
         self.renderer.resize(size)
+        if self.remote is not None:
+            self.remote.update(self.stage.scene, self.renderer.settings)
         if self.rides:
             self.fly.jump(self.stage.camera_at(self.clock.time_s))
         self.frame = self.renderer.render(
