@@ -26,8 +26,8 @@ from elemental.passes.cone_trace.steps import STEP_VIEWS, step_view
 from elemental.passes.forward import draw_translucent
 from elemental.passes.gbuffer import GBuffer, draw_gbuffer
 from elemental.passes.light_cells import cull_to_view
-from elemental.passes.post.fxaa import fxaa
-from elemental.passes.post.tonemap import tonemap
+from elemental.passes.post.develop import develop
+from elemental.passes.post.history import PostHistory
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.shade import shade
 from elemental.passes.shadow import ShadowMaps, update_shadows
@@ -105,6 +105,7 @@ class Renderer:
         self._area_block = pack_area_lights(self._area_lights)
         self._followed: Pose | None = None
         self._last_pose = LastPose()
+        self._post = PostHistory(device, settings)
         self._meshes = GpuScene(device, scene, self._area_lights)
         self._shadows = ShadowMaps(device, _shadow_settings(settings))
         self._sky = Sky(device)
@@ -272,8 +273,7 @@ class Renderer:
         )
         if view_name == "scene_color":
             return scene_color
-        image = tonemap(g, view, scene_color)
-        return fxaa(g, view, image) if s["fxaa.enabled"] else image
+        return develop(g, view, scene_color, gb, s, self._post)
 
     @property
     def _cone_split(self) -> int:
@@ -319,6 +319,7 @@ class Renderer:
         """Free everything on the device."""
         if self._voxels is not None:
             self._voxels.release()
+        self._post.release()
         self._sky.release()
         self._shadows.release()
         self._meshes.release()

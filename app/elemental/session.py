@@ -35,6 +35,9 @@ from elemental.settings import Settings
 DEFAULT_SCENE = "atrium"
 ANIMATION = "scene.animation"
 """The one setting that a scene is read by."""
+FIXED_EXPOSURE = {"eye_adaptation.min_brightness": 1.0, "eye_adaptation.max_brightness": 1.0}
+"""Settings of a scene whose exposure is known, by its file or by its sun's unit: the eye would undo
+it. The file's own settings stand over these."""
 NAMES_TOLD = 24
 """How many names a refusal lists: every view, and the cameras of most scenes."""
 
@@ -76,7 +79,9 @@ def open_scene(name: str | None, assignments: Iterable[str]) -> tuple[Scene, Set
         animation=asked[ANIMATION] if is_asked else None,
     )
     exposure = fixed_exposure_ev(scene) if scene.exposure_ev is None else scene.exposure_ev
-    own = Settings().replace({"exposure": exposure, **scene.settings}, str(scene.path))
+    known = scene.exposure_ev is not None or exposure != 0.0
+    given = {"exposure": exposure, **(FIXED_EXPOSURE if known else {}), **scene.settings}
+    own = Settings().replace(given, str(scene.path))
     settings = Settings.parse(texts, own)
     if scene.exposure_ev is None and settings["exposure"] == exposure != 0.0:
         note_exposure(scene, exposure)

@@ -1,9 +1,4 @@
-// From scene-referred radiance to display codes.
-
-// Filmic curve: the fit of [Narkowicz15 "ACES Filmic Tone Mapping Curve"].
-vec3 filmic_curve(vec3 x) {
-    return clamp((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
-}
+// From display-referred linear colour to display codes.
 
 // IEC 61966-2-1, per channel.
 vec3 srgb_encode(vec3 linear) {

@@ -59,7 +59,7 @@ device.glsl_root = lambda: root
 words = Run("corner.gltf", (96, 64), ["gi.enabled=false"], False, 2)
 stage = set_stage(words.scene, words.assignments, Viewpoint(), words.size)
 app = App(Window(words.size, "elemental"), stage, words)
-shader = root / "post/tonemap.comp.glsl"
+shader = root / "post/tonemap.frag.glsl"
 good = shader.read_text()
 
 def picture_after(source):
@@ -70,7 +70,7 @@ def picture_after(source):
 
 before = picture_after(good)
 assert picture_after(good + "\\nthis is no GLSL\\n") == before
-assert len(app.problems) == 1 and "tonemap.comp.glsl:" in app.problems[0], app.problems
+assert len(app.problems) == 1 and "tonemap.frag.glsl:" in app.problems[0], app.problems
 assert picture_after(good) == before and app.problems == []
 app.release()
 """

@@ -18,7 +18,14 @@ from gpu.voxel.scenes import colored, glowing, part
 from shapes import box, sphere, torus
 
 SIZE = (128, 72)
-SETTINGS = {"gi.resolution": 64, "shadow.resolution": 512}
+SETTINGS = {
+    "gi.resolution": 64,
+    "shadow.resolution": 512,
+    "eye_adaptation.min_brightness": 1.0,
+    "eye_adaptation.max_brightness": 1.0,
+    "vignette.intensity": 0.0,
+}
+"""The light and the film alone: the lens and the eye have goldens of their own."""
 
 
 def colored_room() -> Scene:

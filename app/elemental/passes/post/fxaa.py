@@ -2,22 +2,15 @@
 
 from __future__ import annotations
 
-from elemental.core.layout import Block
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import AnyTexture, Sampled, TextureHandle
-from elemental.gpu.shaders import Compute
+from elemental.gpu.shaders import Raster
 
-FXAA = Compute("post/fxaa.comp.glsl")
+FXAA = Raster("post/triangle.vert.glsl", "post/fxaa.frag.glsl")
 
 
-def fxaa(g: Graph, view: Block, image: AnyTexture) -> TextureHandle:
+def fxaa(g: Graph, image: AnyTexture) -> TextureHandle:
     """`image` (H, W) RGBA8, display codes, with its edges smoothed; flat areas keep their bits."""
     smooth = g.texture("fxaa", like=image)
-    g.compute(
-        FXAA,
-        reads={"u_image": Sampled(image, filter="linear")},
-        writes={"o_image": smooth},
-        params={"View": view},
-        threads=image.size,
-    )
+    g.raster(FXAA, color=smooth, reads={"u_image": Sampled(image, filter="linear")})
     return smooth

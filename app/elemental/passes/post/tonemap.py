@@ -1,24 +1,60 @@
-"""From scene-referred radiance to display codes."""
+"""From scene-referred radiance to display codes: the film, and all that can go in one pass with it.
+
+[Mittring12 "Eye Adaptation (Auto-Exposure)"]: the exposure is read in the vertex shader.
+"""
 
 from __future__ import annotations
+
+from functools import cache
 
 from elemental.core.layout import Block
 from elemental.gpu.formats import RGBA8
 from elemental.gpu.graph import Graph
-from elemental.gpu.refs import AnyTexture, TextureHandle
-from elemental.gpu.shaders import Compute
+from elemental.gpu.refs import AnyTexture, Ref, Sampled, TextureHandle
+from elemental.gpu.resources import Texture
+from elemental.gpu.shaders import Raster
+from elemental.passes.post.exposure import Exposed
+from elemental.passes.post.textures import Lut
 
-TONEMAP = Compute("post/tonemap.comp.glsl")
+SCREEN = "post/screen.vert.glsl"
 
 
-def tonemap(g: Graph, view: Block, scene_color: AnyTexture) -> TextureHandle:
-    """(H, W) RGBA8, sRGB encoded: the view's exposure, a filmic curve and dither."""
+@cache
+def _shader(bloom: bool, dirt: bool, resample: bool, lut: int) -> Raster:
+    defines = {"BLOOM": int(bloom), "DIRT": int(dirt), "RESAMPLE": int(resample), "LUT": lut}
+    return Raster(SCREEN, "post/tonemap.frag.glsl", defines=defines)
+
+
+def tonemap(
+    g: Graph,
+    exposed: Exposed,
+    film: Block,
+    scene_color: AnyTexture,
+    *,
+    bloom: AnyTexture | None = None,
+    dirt: Texture | None = None,
+    lut: Lut | None = None,
+) -> TextureHandle:
+    """(H, W) RGBA8, sRGB encoded, of radiance (H, W).
+
+    bloom: exposed light to add, of half the size rounded up; dirt: mask that adds it once more.
+    """
+    dirt = dirt if bloom is not None else None
     image = g.texture("tonemap", size=scene_color.size, format=RGBA8)
-    g.compute(
-        TONEMAP,
-        reads={"u_scene_color": scene_color},
-        writes={"o_image": image},
-        params={"View": view},
-        threads=scene_color.size,
+    resample = bool(film["fringe"] > 0.0 or film["grain_jitter_px"] > 0.0)
+    reads: dict[str, Ref] = {**exposed.reads, "u_scene_color": Sampled(scene_color, "linear")}
+    if bloom is not None:
+        reads["u_bloom"] = bloom
+    if dirt is not None:
+        reads["u_dirt"] = dirt
+    kind = 0
+    if lut is not None:
+        reads["u_lut"] = Sampled(lut.texture, "linear")
+        kind = 3 if lut.table.is_cube else 1
+    g.raster(
+        _shader(bloom is not None, dirt is not None, resample, kind),
+        color=image,
+        reads=reads,
+        params={**exposed.params, "Film": film},
     )
     return image

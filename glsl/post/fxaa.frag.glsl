@@ -2,12 +2,8 @@
 // local contrast of luma, classify them as horizontal or vertical, walk to both ends of the edge,
 // and shift the lookup across the edge by how near its end is; single pixels are blended by their
 // contrast to the neighbourhood.
-layout(local_size_x = 8, local_size_y = 8) in;
-
-#include "shared/view.glsl"
-
 uniform sampler2D u_image;  // display codes, linear filter
-layout(rgba8) writeonly uniform image2D o_image;
+out vec4 o_color;
 
 const float CONTRAST_ABSOLUTE = 0.0312;  // [Lottes09] "visible limit"
 const float CONTRAST_RELATIVE = 0.125;   // [Lottes09] "high quality"
@@ -20,7 +16,7 @@ float luma(vec3 display) {
 }
 
 float luma_at(vec2 position_px) {
-    return luma(textureLod(u_image, position_px * u_view.viewport_px.zw, 0.0).rgb);
+    return luma(textureLod(u_image, position_px / vec2(textureSize(u_image, 0)), 0.0).rgb);
 }
 
 // 3x3 lumas, row by row from below; [4] is the pixel.
@@ -75,9 +71,8 @@ vec2 shifted_position(vec2 center, float contrast) {
 }
 
 void main() {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    ivec2 last = ivec2(u_view.viewport_px.xy) - 1;
-    if (any(greaterThan(pixel, last))) return;
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    ivec2 last = textureSize(u_image, 0) - 1;
     float lowest = 1.0;
     float highest = 0.0;
     for (int i = 0; i < 9; ++i) {
@@ -91,7 +86,7 @@ void main() {
     vec4 color = texelFetch(u_image, pixel, 0);
     if (contrast >= max(CONTRAST_ABSOLUTE, CONTRAST_RELATIVE * highest)) {
         vec2 position = shifted_position(vec2(pixel) + 0.5, contrast);
-        color.rgb = textureLod(u_image, position * u_view.viewport_px.zw, 0.0).rgb;
+        color.rgb = textureLod(u_image, position / vec2(textureSize(u_image, 0)), 0.0).rgb;
     }
-    imageStore(o_image, pixel, color);
+    o_color = color;
 }

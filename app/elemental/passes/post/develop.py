@@ -1,0 +1,42 @@
+"""The post-processing graph on one page. What is off, or would change nothing, does not run.
+
+[Mittring12 "New post processing graph"]
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from elemental.core.layout import Block
+from elemental.gpu.graph import Graph
+from elemental.gpu.refs import TextureHandle
+from elemental.passes.gbuffer import GBuffer
+from elemental.passes.post.film import film_block
+from elemental.passes.post.fxaa import fxaa
+from elemental.passes.post.history import PostHistory
+from elemental.passes.post.scale import downsample
+from elemental.passes.post.tonemap import tonemap
+
+
+def develop(
+    g: Graph,
+    view: Block,
+    scene_color: TextureHandle,
+    gb: GBuffer,
+    settings: Mapping[str, Any],
+    history: PostHistory,
+) -> TextureHandle:
+    """The finished picture, (H, W) RGBA8 display codes, of radiance (H, W) RGBA16F.
+
+    ``settings``: this frame's, blended or not; ``history``: the renderer's, one step a frame.
+    """
+    s = settings
+    history.advance(view)
+    measures = history.eye.is_on(s)
+    half = downsample(g, scene_color) if measures else None
+    exposed = history.eye.update(g, half, s, history.elapsed_s)
+    lut = history.textures.lut(s["color_grading.lut"]) if s["color_grading.intensity"] else None
+    film = film_block(s, lut.table if lut else None, int(view["frame"]), (0.0, 0.0, 0.0))
+    image = tonemap(g, exposed, film, scene_color, lut=lut)
+    return fxaa(g, image) if s["fxaa.enabled"] else image

@@ -1,0 +1,46 @@
+"""What the post-processing effects keep from frame to frame, and what they load."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from elemental.core.layout import Block
+from elemental.gpu.device import Device
+from elemental.passes.post.exposure import EyeAdaptation
+from elemental.passes.post.textures import PostTextures
+
+LONGEST_STEP_S = 1.0
+"""More scene time than this between two frames is a cut, s [inferred]: nothing is blended over."""
+
+
+class PostHistory:
+    """State of the effects of one renderer."""
+
+    def __init__(self, device: Device, settings: Mapping[str, Any]) -> None:
+        """Raises InputError for a texture that ``settings`` name and that can't be loaded."""
+        self.eye = EyeAdaptation(device)
+        self.textures = PostTextures(device)
+        self.view_before: Block | None = None
+        """The block View of the frame before; None for the first one and after a cut."""
+        self.elapsed_s: float | None = None
+        """Scene time since that frame; None where there is none."""
+        self._last_view: Block | None = None
+        self.textures.lut(settings["color_grading.lut"])
+        for problem in self.textures.problems.values():
+            raise problem
+
+    def advance(self, view: Block) -> None:
+        """Begin a frame as seen by ``view``."""
+        before = self._last_view
+        self._last_view = view
+        self.view_before = self.elapsed_s = None
+        if before is not None:
+            elapsed_s = float(view["time_s"]) - float(before["time_s"])
+            if 0.0 <= elapsed_s <= LONGEST_STEP_S:
+                self.view_before, self.elapsed_s = before, elapsed_s
+
+    def release(self) -> None:
+        """Free everything on the device."""
+        self.eye.release()
+        self.textures.release()

@@ -1,0 +1,96 @@
+"""Look-up tables and masks that settings name, loaded when they are first asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+
+from elemental.core.cube_lut import CubeLut, read_cube_lut
+from elemental.core.errors import InputError
+from elemental.core.images import read_png_jpeg_webp
+from elemental.core.paths import content_root
+from elemental.gpu.device import Device
+from elemental.gpu.formats import RGBA16F, SRGB8_A8
+from elemental.gpu.resources import Texture
+
+FOLDER = "textures"
+MOST_CURVE_TEXELS = 4096
+"""Longer curves are resampled to this: drivers of GL 4.3 have textures of 16,384 at least, displays
+tell 1,024 levels apart."""
+HALF_MAX = 65504.0
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Lut:
+    """A look-up table on the device."""
+
+    table: CubeLut
+    texture: Texture
+
+
+class PostTextures:
+    """What is loaded, by the name that a setting gives: a file of content/textures/, or a path.
+
+    ``problems``: names that could not be loaded, and why. The effect then goes without.
+    """
+
+    def __init__(self, device: Device) -> None:
+        self._device = device
+        self._luts: dict[str, Lut | None] = {}
+        self._images: dict[str, Texture | None] = {}
+        self.problems: dict[str, InputError] = {}
+
+    def lut(self, name: str) -> Lut | None:
+        """The table of a `.cube` file; None for an empty name and for one in ``problems``."""
+        return self._get(self._luts, name, self._load_lut)
+
+    def image(self, name: str) -> Texture | None:
+        """A PNG, JPEG or WebP image, linear when sampled; None as for ``lut``."""
+        return self._get(self._images, name, self._load_image)
+
+    def release(self) -> None:
+        """Free everything."""
+        for lut in self._luts.values():
+            if lut is not None:
+                lut.texture.release()
+        for image in self._images.values():
+            if image is not None:
+                image.release()
+
+    def _get(self, known: dict[str, T | None], name: str, load: Callable[[Path], T]) -> T | None:
+        if not name:
+            return None
+        if name not in known:
+            shipped = content_root() / FOLDER / name
+            try:
+                known[name] = load(shipped if shipped.is_file() else Path(name))
+            except InputError as error:
+                self.problems[name] = error
+                known[name] = None
+        return known[name]
+
+    def _load_lut(self, path: Path) -> Lut:
+        if path.suffix.lower() != ".cube":
+            raise InputError(path, "", "expected a .cube file")
+        lut = read_cube_lut(path)
+        colors = np.clip(lut.table, -HALF_MAX, HALF_MAX)
+        if not lut.is_cube and lut.size > MOST_CURVE_TEXELS:
+            places = np.linspace(0, lut.size - 1, MOST_CURVE_TEXELS)
+            old = np.arange(lut.size)
+            colors = np.stack([np.interp(places, old, colors[:, k]) for k in range(3)], axis=1)
+            lut = CubeLut(colors.astype(np.float32), lut.low, lut.high)
+        texels = np.ones((*colors.shape[:-1], 4), np.float16)
+        texels[..., :3] = colors
+        size = (lut.size,) * 3 if lut.is_cube else (lut.size, 1)
+        return Lut(lut, self._device.texture(path.name, size, RGBA16F, data=texels))
+
+    def _load_image(self, path: Path) -> Texture:
+        pixels = np.ascontiguousarray(np.flipud(read_png_jpeg_webp(path)))
+        height, width = pixels.shape[:2]
+        return self._device.texture(path.name, (width, height), SRGB8_A8, data=pixels)
