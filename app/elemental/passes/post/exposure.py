@@ -86,9 +86,7 @@ class EyeAdaptation:
         if brightness != self._fixed:
             self._fixed = brightness
             histogram = np.zeros((16, 4), np.float32)
-            fixed = pack(
-                self._eye, histogram=histogram, brightness=brightness, measured=brightness
-            )
+            fixed = pack(self._eye, histogram=histogram, brightness=brightness, measured=brightness)
             self.state.write(fixed)
 
 
