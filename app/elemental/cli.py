@@ -14,7 +14,7 @@ from dataclasses import fields
 from typing import TypeVar
 
 from elemental.core.errors import InputError
-from elemental.flags import parse
+from elemental.flags import DEFAULT_SIZE, parse
 
 T = TypeVar("T")
 
@@ -87,14 +87,26 @@ def _bench(options: argparse.Namespace) -> None:
 def _list(options: argparse.Namespace) -> None:
     from elemental.listing import OF_A_SCENE, lines  # noqa: PLC0415
 
+    of_graph = [f for f in ("size", "view", "assignments", "json") if getattr(options, f)]
+    if options.what != "graph" and of_graph:
+        flag = "--set" if of_graph[0] == "assignments" else f"--{of_graph[0]}"
+        raise InputError(f"list {options.what}", flag, "is a flag of list graph")
     if options.what in OF_A_SCENE and options.scene is None:
         raise InputError(f"list {options.what}", "SCENE", "name a scene")
-    if options.what not in OF_A_SCENE and options.scene is not None:
+    if options.what not in (*OF_A_SCENE, "graph") and options.scene is not None:
         raise InputError(f"list {options.what}", options.scene, "takes no scene")
     if sys.stdout is None:
         raise InputError(f"list {options.what}", "", "the standard output is closed")
-    found = lines(options.what, options.scene)
+    found = _graph(options) if options.what == "graph" else lines(options.what, options.scene)
     for line in found:
         print(line)
     if not found:
         print(f"elemental: note: no {options.what}", file=sys.stderr)
+
+
+def _graph(options: argparse.Namespace) -> list[str]:
+    from elemental.graph_listing import GraphListing, list_graph  # noqa: PLC0415
+
+    options.size = options.size or DEFAULT_SIZE
+    options.view = options.view or "final"
+    return list_graph(_filled(GraphListing, options))

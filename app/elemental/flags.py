@@ -12,6 +12,8 @@ from typing import Any, NoReturn
 from elemental import __version__
 from elemental.core.errors import InputError
 
+DEFAULT_SIZE = (1280, 720)
+"""(width, height) of a picture, pixels."""
 MAX_SIDE_PX = 16384
 """Largest image side; the texture limit of common drivers."""
 
@@ -21,7 +23,7 @@ MAX_COORDINATE_M = 1e9
 VECTOR_FLAGS = frozenset({"--eye", "--target"})
 REMOTE_PORT, OSC_PORT = 8012, 8013
 """Where ``--remote`` and ``--osc`` listen unless told; free of well-known services [IANA]."""
-LISTS = ("views", "settings", "scenes", "cameras", "animations", "bindings")
+LISTS = ("views", "settings", "scenes", "cameras", "animations", "bindings", "graph")
 
 Command = Callable[[argparse.Namespace], None]
 
@@ -67,7 +69,11 @@ def _add_common_flags(parser: _Parser) -> None:
         help=".gltf, .glb, .toml or a name of `elemental list scenes` (default: the demo)",
     )
     flag = parser.flag
-    flag("--size", "WxH", _size, (1280, 720), "width and height in pixels (default: 1280x720)")
+    flag("--size", "WxH", _size, DEFAULT_SIZE, "width and height in pixels (default: 1280x720)")
+    _add_set_flag(parser)
+
+
+def _add_set_flag(parser: _Parser) -> None:
     parser.add_argument(
         "--set",
         dest="assignments",
@@ -141,8 +147,16 @@ def _add_bench_flags(parser: _Parser) -> None:
 def _add_list_words(parser: _Parser) -> None:
     parser.add_argument("what", choices=LISTS, help="what to list")
     parser.add_argument(
-        "scene", nargs="?", metavar="SCENE", help="whose cameras or animations (no default)"
+        "scene",
+        nargs="?",
+        metavar="SCENE",
+        help="whose cameras, animations or graph (default: the demo's graph)",
     )
+    flag = parser.flag
+    flag("--size", "WxH", _size, None, "of the graph's frame, in pixels (default: 1280x720)")
+    flag("--view", "NAME", str, None, "the graph's buffer of `list views` (default: final)")
+    flag("--json", "G.json", Path, None, "also write the graph, in ms and bytes (default: none)")
+    _add_set_flag(parser)
 
 
 _COMMANDS: dict[str, tuple[str, Callable[[_Parser], None]]] = {

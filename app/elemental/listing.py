@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
+from elemental.core.text import columns
 from elemental.settings import SETTINGS
 
 OF_A_SCENE = ("cameras", "animations")
@@ -21,15 +20,8 @@ def lines(what: str, scene: str | None = None) -> list[str]:
     return tables[what]()
 
 
-def _columns(rows: Sequence[Sequence[str]]) -> list[str]:
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))] if rows else []
-    return [
-        "  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in rows
-    ]
-
-
 def _settings() -> list[str]:
-    return _columns(
+    return columns(
         [
             (
                 s.key,
@@ -52,13 +44,13 @@ def _scenes() -> list[str]:
 def _views() -> list[str]:
     from elemental.frame import VIEWS  # noqa: PLC0415 (pulls in the whole renderer)
 
-    return _columns(list(VIEWS.items()))
+    return columns(list(VIEWS.items()))
 
 
 def _bindings() -> list[str]:
     from elemental.ui.bindings import BINDINGS  # noqa: PLC0415 (only this list needs it)
 
-    return _columns([(b.keys_text(), b.help) for b in BINDINGS])
+    return columns([(b.keys_text(), b.help) for b in BINDINGS])
 
 
 def _of_scene(what: str, scene: str) -> list[str]:

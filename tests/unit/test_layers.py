@@ -19,7 +19,7 @@ LAYERS = (
     {"frame"},
     {"session", "report", "picture", "remote"},
     {"ui"},
-    {"shot", "bench", "listing", "flags"},
+    {"shot", "bench", "listing", "graph_listing", "flags"},
     {"cli"},
     {"__main__"},
 )

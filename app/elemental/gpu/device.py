@@ -17,6 +17,7 @@ from elemental.gpu import screen
 from elemental.gpu.execute import Executor
 from elemental.gpu.formats import Format
 from elemental.gpu.graph import Graph
+from elemental.gpu.graph_report import GraphReport
 from elemental.gpu.headless import adopt, create
 from elemental.gpu.heap import keep_freed_memory
 from elemental.gpu.info import DeviceInfo
@@ -60,6 +61,9 @@ class Device:
         self.shader_root: Path = glsl_root()
         self.frame = 0
         """Number of graphs executed."""
+        self.wants_report = False
+        self.graph_report: GraphReport | None = None
+        """Of the newest frame that ``report_next_frame`` asked about."""
         self._bytes: Counter[str] = Counter()
         self._fences: deque[int] = deque()
         self._watcher: ShaderWatcher | None = None
@@ -234,6 +238,10 @@ class Device:
         self.frame += 1
         if self.debug:
             self.check()
+
+    def report_next_frame(self) -> None:
+        """Have the next graph that runs described in ``graph_report``."""
+        self.wants_report = True
 
     def check(self) -> None:
         """Raise GlError if the driver reported an error or a high severity message."""

@@ -11,6 +11,7 @@ from elemental.gpu import gl as c
 from elemental.gpu import state as raster_state
 from elemental.gpu.binder import Binder
 from elemental.gpu.encode import Encoder
+from elemental.gpu.graph_report import describe
 from elemental.gpu.passes import (
     ClearBuffer,
     ClearTexture,
@@ -118,6 +119,10 @@ class Executor:
             handle = resources[index]
             assert isinstance(handle, (TextureHandle, BufferHandle))
             self._kept.append((_description(handle), physical[index], handle))
+        assert self.pool.stats.in_use == len(self._kept), "a target was not given back"
+        if device.wants_report:
+            device.wants_report = False
+            device.graph_report = describe(device, graph, plan, physical)
         device.timers.end(ran, cpu_ms, queries)
         device.end_frame()
 

@@ -44,6 +44,32 @@ class PoolStats:
     freed: int = 0
 
 
+@dataclass(slots=True)
+class _Life(Generic[T]):
+    description: Hashable
+    resource: T
+    made: int
+    """Frame of its allocation."""
+    reuses: int = 0
+    in_use: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class HeldTarget:
+    """One resource of the pool, for those who look at it."""
+
+    memory: int
+    """Its serial number."""
+    description: Hashable
+    nbytes: int
+    in_use: bool
+    age: int
+    """Frames since its allocation."""
+    idle: int
+    """Frames since its last use."""
+    reuses: int
+
+
 class TargetPool(Generic[T]):
     """Resources by description. ``make(description)`` allocates one."""
 
@@ -55,6 +81,7 @@ class TargetPool(Generic[T]):
         self._frame = 0
         self._free: dict[Hashable, list[tuple[int, T]]] = {}
         self._idle_since: dict[int, int] = {}
+        self._lives: dict[int, _Life[T]] = {}
 
     def acquire(self, description: Hashable) -> T:
         """A free resource of ``description``, or a new one."""
@@ -62,7 +89,11 @@ class TargetPool(Generic[T]):
         free = self._free.get(description)
         if free:
             self.stats.reuses += 1
-            return free.pop(0)[1]
+            serial, resource = free.pop(0)
+            life = self._lives[serial]
+            life.reuses += 1
+            life.in_use = True
+            return resource
         try:
             resource = self._make(description)
         except Exception:
@@ -71,12 +102,14 @@ class TargetPool(Generic[T]):
         self.stats.allocations += 1
         self.stats.bytes += resource.nbytes
         self.stats.high_water = max(self.stats.high_water, self.stats.bytes)
+        self._lives[resource.serial] = _Life(description, resource, self._frame)
         return resource
 
     def give_back(self, description: Hashable, resource: T) -> None:
         """Return a resource; the next request of the same description may have it."""
         self.stats.in_use -= 1
         self._idle_since[resource.serial] = self._frame
+        self._lives[resource.serial].in_use = False
         bisect.insort(self._free.setdefault(description, []), (resource.serial, resource))
 
     def end_frame(self) -> None:
@@ -99,8 +132,23 @@ class TargetPool(Generic[T]):
                 self._drop(resource)
         self._free.clear()
 
+    def held(self) -> list[HeldTarget]:
+        """Everything that the pool holds, in use or free, the oldest first."""
+        return [
+            HeldTarget(
+                serial,
+                life.description,
+                life.resource.nbytes,
+                life.in_use,
+                self._frame - life.made,
+                0 if life.in_use else self._frame - self._idle_since[serial],
+                life.reuses,
+            )
+            for serial, life in self._lives.items()
+        ]
+
     def _drop(self, resource: T) -> None:
         self.stats.freed += 1
         self.stats.bytes -= resource.nbytes
-        del self._idle_since[resource.serial]
+        del self._idle_since[resource.serial], self._lives[resource.serial]
         resource.release()
