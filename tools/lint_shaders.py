@@ -61,15 +61,22 @@ def switch_variants(text: str) -> Iterator[Defines]:
         yield ((name, 1 - defaults.get(name, 0)),)
 
 
-def described_variants() -> Iterator[tuple[str, Defines]]:
-    """(entry point, defines) of every description that a module constant holds."""
+def described_programs() -> list[Compute | Raster]:
+    """Every description that a module constant holds, once."""
+    found: dict[Compute | Raster, None] = {}
     for name in PACKAGES:
         package = importlib.import_module(f"elemental.{name}")
         for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
             for value in vars(importlib.import_module(module.name)).values():
-                for shader in _shaders_in(value):
-                    for _, path in shader.stages:
-                        yield path, shader.defines
+                found |= dict.fromkeys(_shaders_in(value))
+    return list(found)
+
+
+def described_variants() -> Iterator[tuple[str, Defines]]:
+    """(entry point, defines) of the stages of all described programs."""
+    for shader in described_programs():
+        for _, path in shader.stages:
+            yield path, shader.defines
 
 
 def _shaders_in(value: object) -> Iterator[Compute | Raster]:

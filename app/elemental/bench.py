@@ -10,6 +10,7 @@ from typing import TypedDict
 
 import numpy as np
 from rich.console import Console
+from rich.measure import Measurement
 from rich.table import Table
 
 from elemental import __version__
@@ -31,6 +32,8 @@ from elemental.scene.model import Camera
 from elemental.session import Viewpoint, check_output, headless_device, set_stage
 
 SCHEMA = "elemental.bench/1"
+WIDEST_TABLE = 1000
+"""Columns of text that a table may take where no terminal bounds it."""
 
 
 @dataclass(frozen=True)
@@ -205,6 +208,9 @@ def print_tables(report: BenchReport, console: Console) -> None:
     measured = str(report["frames"])
     table.add_row("all passes", *_cells(report["frame_gpu_ms"]), cpu, measured)
     table.add_row("frame, wall clock", *_cells(report["frame_wall_ms"]), "", measured)
+    if not console.is_terminal:  # in a file or a pipe nothing is too wide
+        unbounded = console.options.update(max_width=WIDEST_TABLE)
+        console.width = max(console.width, Measurement.get(console, unbounded, table).maximum)
     console.print(table)
     for name, count in report["counters"].items():
         console.print(f"{name}: {count:,}")

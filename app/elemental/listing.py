@@ -57,4 +57,6 @@ def _of_scene(what: str, scene: str) -> list[str]:
     from elemental.session import open_scene  # noqa: PLC0415 (only these lists open a scene)
 
     opened, _ = open_scene(scene, ())
-    return [camera.name for camera in opened.cameras] if what == "cameras" else opened.animations
+    if what == "cameras":
+        return [camera.name for camera in opened.cameras]
+    return opened.animations + [f"[[motions]] {mover}" for mover in opened.movers]

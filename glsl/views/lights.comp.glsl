@@ -16,7 +16,7 @@ uniform sampler2D u_gbuffer_c;
 uniform sampler2D u_gbuffer_d;
 layout(rgba16f) writeonly uniform image2D o_image;
 
-// Share of the unshadowed irradiance that arrives; 1 where no light could reach the surface anyway.
+// Share of the unshadowed irradiance that arrives; 0 where no light could reach the surface anyway.
 vec3 visibility(ShadingPoint point) {
     vec3 arriving = vec3(0.0);
     vec3 unshadowed = vec3(0.0);
@@ -27,7 +27,7 @@ vec3 visibility(ShadingPoint point) {
         unshadowed += irradiance;
         arriving += irradiance * light_visibility_in_view(walk.light, point.p_ws, point.n_ws);
     }
-    return mix(arriving / max(unshadowed, vec3(1e-30)), vec3(1.0), equal(unshadowed, vec3(0.0)));
+    return arriving / max(unshadowed, vec3(1e-30));
 }
 
 void main() {

@@ -120,6 +120,8 @@ def test_a_scene_file_s_motion_plays(tmp_path: Path) -> None:
 def test_animations_are_listed(tmp_path: Path) -> None:
     result = elemental("list", "animations", "stage.glb", cwd=tmp_path)
     assert result.stdout.splitlines() == ["slide", "sink"]
+    result = elemental("list", "animations", "orbit.toml", cwd=tmp_path)
+    assert result.stdout.splitlines() == ["slide", "sink", '[[motions]] model "ball": orbit']
     result = elemental("list", "animations", cwd=tmp_path)
     assert "list animations: SCENE: name a scene" in result.stderr
     assert result.returncode == 2

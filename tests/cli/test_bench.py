@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import io
 import json
 from pathlib import Path
 from typing import Any
 
+from rich.console import Console
+
 from cli.process import elemental
 from cli.schema import mismatches
 from cli.small_scene import write_corner
-from elemental.bench import BenchReport, spread
+from elemental.bench import BenchReport, Spread, print_tables, spread
 
 WORDS = ("--size", "32x24", "--frames", 3, "--warmup", 2, "--set", "gi.resolution=64",
          "--json", "b.json")  # fmt: skip
@@ -37,6 +40,27 @@ def test_a_still_scene_does_no_voxel_work_and_a_forced_rebuild_does(tmp_path: Pa
         assert 0 <= entry["gpu_ms"]["min"] <= entry["gpu_ms"]["median"] <= entry["gpu_ms"]["p95"]
     assert still["frame_wall_ms"]["min"] >= still["frame_cpu_ms"]["min"] > 0
     assert still["counters"] == rebuilt["counters"]
+
+
+def test_no_figure_is_cut_where_no_terminal_bounds_the_table() -> None:
+    """Nor the name of a pass, however long."""
+    name = "a pass with a name of more than forty letters"
+    times = Spread(median=12345.678, min=9876.543, p95=54321.987)
+    report: Any = {
+        "scene": {"name": "corner"}, "size": [32, 24], "frames": 123, "gl": {"renderer": "r"},
+        "passes": [{"name": name, "frames": 369, "gpu_ms": times, "cpu_ms": times}],
+        "frame_gpu_ms": times, "frame_wall_ms": times, "frame_cpu_ms": times,
+        "counters": {}, "bytes": {},
+    }  # fmt: skip
+    told = io.StringIO()
+    print_tables(report, Console(file=told, width=80))
+    rows = [line for line in told.getvalue().splitlines() if "12345.678" in line]
+    assert len(rows) == 3
+    assert name in rows[0]
+    for row in rows:
+        assert "9876.543" in row
+        assert "54321.987" in row
+        assert "\u2026" not in row
 
 
 def test_a_spread_of_nothing_is_zero_and_of_one_is_itself() -> None:

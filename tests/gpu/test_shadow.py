@@ -198,7 +198,7 @@ def test_a_light_can_come_and_go(rig: MakeRig) -> None:
     assert len(drawn(view)) == 6
     world.lights = []
     assert drawn(view) == set()
-    assert view.visibility().max() == 1.0
+    assert view.visibility().max() == 0.0
     world.lights = [
         LIGHTS["point"][0],
         LIGHTS["spot"][0],

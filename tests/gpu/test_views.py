@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -52,6 +54,15 @@ def test_shadow_is_the_share_that_arrives_and_direct_its_radiance(rig: MakeRig) 
     direct, _ = codes(rig, "direct")
     assert np.all(direct[:3] > [0.25, 0.5, 1.0])
     assert np.all(direct[:3] < [0.33, 0.58, 1.08])
+
+
+def test_shadow_is_black_where_a_surface_faces_away(rig: MakeRig) -> None:
+    """From the light, whether it casts shadows or not."""
+    for casts in (True, False):
+        lamp = replace(sun(vector(0, 1, 0)), casts_shadow=casts)
+        world = scene((mesh(quad(1.0)), IDENTITY), materials=[material()], lights=[lamp])
+        view = rig(world, ABOVE)
+        assert view.visibility()[CENTER] == 0.0
 
 
 def test_false_colours_tell_values_apart(rig: MakeRig) -> None:

@@ -64,7 +64,7 @@ class MaterialSnippet:
         """Take the newly read definition into use, or drop it."""
         if accepted:
             self.definition = self._next
-            self.revision += 1
+            self.revision += self._loads > 1  # to be compiled for the first time is no edit
         else:
             self._next = self.definition
 

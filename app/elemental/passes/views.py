@@ -24,7 +24,8 @@ CHANNELS = {
 """Views of one G-buffer channel -> help; display codes."""
 
 LIGHT_VIEWS = {
-    "shadow": "share of the lights' irradiance that arrives",
+    "shadow": "share of the lights' irradiance that arrives; black in shadow, and where no light "
+    "faces the surface",
     "direct": "radiance by direct light alone",
 }
 """Views of the lights -> help; linear."""

@@ -29,7 +29,7 @@ from elemental.scene.model import (
 )
 from elemental.scene.motion import RigBuilder
 from elemental.scene.scene_file import SceneFile, flat_settings, read_scene_file
-from elemental.scene.scene_motions import Movers
+from elemental.scene.scene_motions import Movers, described
 from elemental.scene.tables.cameras import CameraTable, PathTable
 from elemental.scene.tables.lights import EnvironmentTable, LightTable
 from elemental.scene.tables.models import ModelTable
@@ -56,6 +56,7 @@ def load_scene_file(path: Path, animation: str | None = None) -> Scene:
     wanted = animation or str(scene.settings.get("scene.animation", EVERY))
     builder = RigBuilder()
     movers = Movers(builder, () if wanted == "none" else file.motions, path)
+    scene.movers = [described(table) for table in file.motions]
     scene.cameras = [_camera(table) for table in file.cameras]
     scene.lights = [_light(table, i) for i, table in enumerate(file.lights)]
     for light in scene.lights:

@@ -110,8 +110,9 @@ class Scene:
     """Everything that a frame needs to know of a file.
 
     What moves stands as at time 0; `extent` (min, max) is the box that holds it at all times, None
-    where nothing moves. `animations` are the names of those that the files hold. `hidden` counts
-    the instances that are left out, since a scale of 0 or a key hides them all the time.
+    where nothing moves. `animations` are the names of those that the files hold, `movers`
+    tells of each motion of a scene file what it moves and how. `hidden` counts the instances that
+    are left out, since a scale of 0 or a key hides them all the time.
     """
 
     name: str
@@ -133,6 +134,7 @@ class Scene:
     motion: Motion | None = None
     extent: tuple[FloatArray, FloatArray] | None = None
     animations: list[str] = field(default_factory=list)
+    movers: list[str] = field(default_factory=list)
     hidden: int = 0
 
     @property

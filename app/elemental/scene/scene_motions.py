@@ -57,6 +57,13 @@ class Movers:
                 )
 
 
+def described(table: MotionTable) -> str:
+    """What a motion moves and how, in a few words: model "orb": orbit, spin."""
+    kind = "model" if table.model is not None else "light"
+    how = [name for name in ("keys", "orbit", "spin") if getattr(table, name) is not None]
+    return f'{kind} "{table.model or table.light}": {", ".join(how)}'
+
+
 def _nodes(builder: RigBuilder, table: MotionTable, place: F64) -> int:
     parent = -1
     if table.orbit is not None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
 from typing import TYPE_CHECKING
 
 from elemental.core.layout import Block
@@ -31,14 +30,33 @@ LIGHT = {
 SIDED_BYTES_A_BRICK = 8 * 6 * 8
 
 
-@cache
-def reader(path: str, kind: str, one_leaf_level: bool, listed: bool = False) -> Compute:
+def _reader(path: str, kind: str, one_leaf_level: bool, listed: bool = False) -> Compute:
     """A shader that reads "leaf" or "filtered" voxels, or "either" (lib/sided_voxel.glsl)."""
     level = int(one_leaf_level)
     return Compute(
         path,
         {"VOXEL_KIND": f"{kind.upper()}_VOXELS", "ONE_LEAF_LEVEL": level, "LISTED": int(listed)},
     )
+
+
+FLAGS = (False, True)
+FILTER = {
+    (kind, one): _reader("voxel/filter.comp.glsl", kind, one)
+    for kind in ("leaf", "filtered", "either")
+    for one in FLAGS
+}
+"""By what the finer voxels are, and whether there is one leaf level."""
+COMPRESS = {
+    (one, listed): _reader("voxel/compress.comp.glsl", "filtered" if one else "either", one, listed)
+    for one in FLAGS
+    for listed in FLAGS
+}
+"""By whether there is one leaf level, and whether the bricks are listed."""
+COMPRESS_LEAVES = {
+    (one, listed): _reader("voxel/compress_leaves.comp.glsl", "leaf", one, listed)
+    for one in FLAGS
+    for listed in FLAGS
+}
 
 
 def light_voxels(
@@ -96,7 +114,7 @@ def filter_levels(g: Graph, octree: Octree, kept: AnyBuffer | None = None) -> An
         if finer == grid.leaf_level:
             kind = "leaf"
         g.compute(
-            reader("voxel/filter.comp.glsl", kind, grid.one_leaf_level),
+            FILTER[kind, grid.one_leaf_level],
             f"filter.{level}",
             reads={
                 **octree.voxel_reads(),
@@ -123,19 +141,14 @@ def compress(g: Graph, octree: Octree, sided: AnyBuffer) -> None:
         for atlas in (octree.atlas, octree.leaf_colors, octree.leaf_normals):
             g.clear_texture(atlas)
     g.compute(
-        reader(
-            "voxel/compress.comp.glsl",
-            "filtered" if grid.one_leaf_level else "either",
-            grid.one_leaf_level,
-            octree.keeps_slots,
-        ),
+        COMPRESS[grid.one_leaf_level, octree.keeps_slots],
         reads=reads,
         writes={"ScaledNodes": octree.nodes, "u_atlas": octree.atlas},
         params=octree.params,
         indirect=(octree.state, state_offset("interior_bricks")),
     )
     g.compute(
-        reader("voxel/compress_leaves.comp.glsl", "leaf", grid.one_leaf_level, octree.keeps_slots),
+        COMPRESS_LEAVES[grid.one_leaf_level, octree.keeps_slots],
         reads=reads,
         writes={
             "ScaledNodes": octree.nodes,

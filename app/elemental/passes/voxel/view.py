@@ -14,8 +14,9 @@ VOXEL_VIEWS = {
     "regions": "leaf level of each region, false colour: blue 5, violet 6, orange 7, yellow 8, "
     "white 9; every second region is darker",
     "occupancy": "nodes at voxels.level by how many of their eight voxels they hold, false colour",
-    "pools": "fill of the octree's pools, a bar each: fragments, tiles, bricks, leaf bricks, "
-    "bricks above the leaves; red: overflowed",
+    "pools": "how full the octree's pools are, five bars, from the top: fragments, tiles of eight "
+    "nodes, bricks, leaf bricks, bricks above the finest level; dark: free, red: not all fitted "
+    "(shot --report tells how many were dropped)",
 }
 """Views of the octree -> help; "voxels" is linear, the others display codes."""
 
