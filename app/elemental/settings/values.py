@@ -8,13 +8,14 @@ from types import MappingProxyType
 from typing import Any
 
 from elemental.core.errors import InputError
+from elemental.settings.lens_table import LENS_TABLE
 from elemental.settings.post_table import POST_TABLE
 from elemental.settings.setting import Setting
 from elemental.settings.surface_table import SURFACE_TABLE
 from elemental.settings.table import TABLE
 
 SETTINGS: Mapping[str, Setting] = MappingProxyType(
-    {setting.key: setting for setting in (*TABLE, *SURFACE_TABLE, *POST_TABLE)}
+    {setting.key: setting for setting in (*TABLE, *SURFACE_TABLE, *LENS_TABLE, *POST_TABLE)}
 )
 
 Mix = tuple[tuple[Any, float], ...]

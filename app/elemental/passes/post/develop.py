@@ -12,6 +12,7 @@ from elemental.core.layout import Block
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import TextureHandle
 from elemental.passes.gbuffer import GBuffer
+from elemental.passes.post.bloom import bloom
 from elemental.passes.post.film import film_block
 from elemental.passes.post.fxaa import fxaa
 from elemental.passes.post.history import PostHistory
@@ -33,10 +34,12 @@ def develop(
     """
     s = settings
     history.advance(view)
-    measures = history.eye.is_on(s)
-    half = downsample(g, scene_color) if measures else None
+    blooms = s["bloom.intensity"] > 0.0
+    half = downsample(g, scene_color) if blooms or history.eye.is_on(s) else None
     exposed = history.eye.update(g, half, s, history.elapsed_s)
+    light = bloom(g, exposed, half, s, scene_color.width) if half is not None else None
+    dirt = history.textures.image(s["bloom.dirt_mask"]) if s["bloom.dirt_intensity"] else None
     lut = history.textures.lut(s["color_grading.lut"]) if s["color_grading.intensity"] else None
-    film = film_block(s, lut.table if lut else None, int(view["frame"]), (0.0, 0.0, 0.0))
-    image = tonemap(g, exposed, film, scene_color, lut=lut)
+    film = film_block(s, lut.table if lut else None, int(view["frame"]))
+    image = tonemap(g, exposed, film, scene_color, bloom=light, dirt=dirt, lut=lut)
     return fxaa(g, image) if s["fxaa.enabled"] else image

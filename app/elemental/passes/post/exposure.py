@@ -59,7 +59,8 @@ class EyeAdaptation:
         self, g: Graph, picture: AnyTexture | None, s: Mapping[str, Any], elapsed_s: float | None
     ) -> Exposed:
         """Measure ``picture`` and adapt to it. elapsed_s: since the frame before; None: a first
-        frame, adapted at once. Without a picture (``is_on`` is false) nothing is measured."""
+        frame, adapted at once. ``picture`` may be None where ``is_on`` is false."""
+        picture = picture if self.is_on(s) else None
         starts = elapsed_s is None or not self._adapts
         block = exposure_block(s, elapsed_s or 0.0, starts)
         exposed = Exposed({"EyeState": self.state}, {"Exposure": block})

@@ -33,10 +33,8 @@ XYZ_FROM_RGB = np.array(
 )  # fmt: skip
 
 
-def film_block(
-    s: Mapping[str, Any], lut: CubeLut | None, frame: int, dirt_tint: tuple[float, ...]
-) -> Block:
-    """The block Film of a frame. ``dirt_tint``: (3,) factor on bloom where the lens is dirty."""
+def film_block(s: Mapping[str, Any], lut: CubeLut | None, frame: int) -> Block:
+    """The block Film of a frame."""
     grain = s["grain.intensity"] + s["grain.jitter"] > 0.0
     size = lut.size if lut is not None else 2
     low, span = (lut.low, lut.high - lut.low) if lut is not None else (np.zeros(3), np.ones(3))
@@ -53,7 +51,7 @@ def film_block(
         lut_share=s["color_grading.intensity"],
         lut_offset=0.5 / size - low * scale,
         grain_seed=frame % (1 << 16) if grain else 0,
-        dirt_tint=dirt_tint,
+        dirt_tint=[s["bloom.dirt_intensity"] * channel for channel in s["bloom.dirt_tint"]],
     )
 
 

@@ -27,6 +27,7 @@ class PostHistory:
         """Scene time since that frame; None where there is none."""
         self._last_view: Block | None = None
         self.textures.lut(settings["color_grading.lut"])
+        self.textures.image(settings["bloom.dirt_mask"])
         for problem in self.textures.problems.values():
             raise problem
 

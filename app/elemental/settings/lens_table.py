@@ -1,0 +1,33 @@
+"""The rows of what happens in the lens: bloom, dirt."""
+
+from __future__ import annotations
+
+from elemental.settings.setting import Setting
+
+# (default size, largest size) of the six bloom kernels, % of the picture's width.
+_BLOOM = ((1.0, 8), (4.0, 16), (16.0, 32), (32.0, 64), (64.0, 128), (64.0, 128))
+
+
+def _bloom_rows(number: int, size: float, largest: float) -> tuple[Setting, Setting]:
+    return (
+        Setting(f"bloom.size{number}", "float", size, "diameter of this bloom kernel",
+                unit="% of the width", lo=0, hi=largest, source="[Mittring12]", volume=True),
+        Setting(f"bloom.tint{number}", "color", (0.5, 0.5, 0.5), "factor on this bloom kernel",
+                lo=0, hi=1, volume=True),
+    )  # fmt: skip
+
+
+LENS_TABLE = (
+    Setting("bloom.intensity", "float", 1.0, "share of bright light that is spread; 0: no bloom",
+            lo=0, hi=8, source="[Mittring12]", volume=True),
+    Setting("bloom.threshold", "float", 1.0,
+            "exposed luminance above which light is spread; below 0: all of it",
+            lo=-1, hi=8, source="[Mittring12]", volume=True),
+    *(row for number, sizes in enumerate(_BLOOM, 1) for row in _bloom_rows(number, *sizes)),
+    Setting("bloom.dirt_mask", "text", "",
+            "where bloom lights up dirt on the lens: an image or one of content/textures/; "
+            "empty: none", unit="file", source="[Mittring12]", volume=True),
+    Setting("bloom.dirt_intensity", "float", 1.0, "factor on that dirt", lo=0, hi=8, volume=True),
+    Setting("bloom.dirt_tint", "color", (0.5, 0.5, 0.5), "tint of that dirt",
+            lo=0, hi=1, volume=True),
+)  # fmt: skip
