@@ -33,7 +33,8 @@ from elemental.passes.shade import shade
 from elemental.passes.shadow import ShadowMaps, update_shadows
 from elemental.passes.shadow_plan import ShadowSettings
 from elemental.passes.sky import Sky
-from elemental.passes.ssao import SSAO_VIEWS, occlude, ssao_view
+from elemental.passes.ssao import SSAO_VIEWS, ssao_view
+from elemental.passes.surfaces import settle_surfaces
 from elemental.passes.views import CHANNELS, LIGHT_VIEWS, light_view, surface_view
 from elemental.passes.voxel import sizing
 from elemental.passes.voxel.grid import Grid
@@ -228,15 +229,15 @@ class Renderer:
         gb = draw_gbuffer(g, view, self._meshes, self.size)
         if view_name in CHANNELS:
             return surface_view(g, view, gb, view_name)
-        cells = cull_to_view(g, view, shadows, camera, self.size)
-        if view_name in LIGHT_VIEWS:
-            return light_view(g, view, gb, shadows, view_name, cells)
         voxel_m = octree.grid.voxel_m if octree is not None else None
         if view_name in SSAO_VIEWS:
             return ssao_view(g, view, gb, s, voxel_m)
+        gb = settle_surfaces(g, view, gb, s, voxel_m)
+        cells = cull_to_view(g, view, shadows, camera, self.size)
+        if view_name in LIGHT_VIEWS:
+            return light_view(g, view, gb, shadows, view_name, cells)
         diffuse_gi = specular = None
         if octree is not None:
-            occlude(g, view, gb, s, voxel_m)
             if view_name in STEP_VIEWS:
                 split, block = self._cone_split, self._area_block
                 return step_view(g, view, gb, octree, sky, block, split, view_name)

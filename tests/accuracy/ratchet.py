@@ -35,6 +35,7 @@ SETTINGS = (
     "gi.specular=true",
     "gi.specular_adaptive=true",
     "ao.intensity=0",
+    "gbuffer.blur=false",
     "shadow.resolution=1024",
 )
 """Stated, so that another default changes nothing here."""

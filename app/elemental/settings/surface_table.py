@@ -21,4 +21,9 @@ SURFACE_TABLE = (
             unit="m", lo=0, hi=200, volume=True),
     Setting("ao.fade_radius", "float", 50.0, "length before that over which it fades",
             unit="m", lo=0, hi=200, volume=True),
+    Setting(
+        "gbuffer.blur", "bool", True,
+        "average normals and ambient occlusion over five pixels; broaden highlights to match",
+        source="[Mittring12] [Toksvig05]",
+    ),
 )  # fmt: skip
