@@ -188,7 +188,8 @@ def bench(words: Bench) -> None:
     }
     if words.json is not None:
         write_json(words.json, report)
-    say(stage.scene.warnings + overflow_warnings(counters), stage.scene.notes)
+    problems = [*renderer.problems(), *overflow_warnings(counters)]
+    say(stage.scene.warnings + problems, stage.scene.notes)
     print_tables(report, Console())
 
 

@@ -23,7 +23,9 @@ MAX_COORDINATE_M = 1e9
 VECTOR_FLAGS = frozenset({"--eye", "--target"})
 REMOTE_PORT, OSC_PORT = 8012, 8013
 """Where ``--remote`` and ``--osc`` listen unless told; free of well-known services [IANA]."""
-LISTS = ("views", "settings", "scenes", "cameras", "animations", "bindings", "graph")
+LISTS = (
+    "views", "settings", "scenes", "cameras", "animations", "materials", "bindings", "graph",
+)  # fmt: skip
 
 Command = Callable[[argparse.Namespace], None]
 

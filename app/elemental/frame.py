@@ -139,6 +139,11 @@ class Renderer:
             self._voxels.release()  # made anew for that range
             self._voxels = None
 
+    def problems(self) -> list[str]:
+        """What is wrong with the materials, a line each: code that does not compile, values that
+        are no numbers; as far as the GPU has told."""
+        return [*self.device.library.problems(), *self._meshes.materials.faults()]
+
     def set_regions(self, regions: Sequence[Region]) -> None:
         """Replace the scene's regions, and with them leaf levels, from the next frame on."""
         self.scene.regions = list(regions)
@@ -183,6 +188,7 @@ class Renderer:
         g = self.device.begin_frame()
         self._meshes.deform(g)
         image = self._declare(g, camera, lights, time_s, frame, view, voxels)
+        self._meshes.materials.watch_faults(g)
         g.keep(image)
         g.execute()
         assert image.physical is not None, "a kept handle has a texture once its graph has run"
@@ -209,6 +215,7 @@ class Renderer:
             time_s=time_s,
             frame=frame,
             indirect=_tint(s, "indirect.intensity", "indirect.color"),
+            subsurface_reach=s["shading.subsurface_reach"],
         )
         environment = self.scene.environment if s["sky.enabled"] else None
         sky = self._sky.update(g, environment, s["sky.intensity"])

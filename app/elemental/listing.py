@@ -10,13 +10,20 @@ OF_A_SCENE = ("cameras", "animations")
 
 
 def lines(what: str, scene: str | None = None) -> list[str]:
-    """The lines of ``views``, ``settings``, ``scenes`` or ``bindings``; of one of OF_A_SCENE.
+    """The lines of one of the lists: ``views``, ``settings``, ``scenes``, ``materials``,
+    ``bindings``, or of one of OF_A_SCENE.
 
     Raises InputError for a scene that can't be opened.
     """
     if what in OF_A_SCENE:
         return _of_scene(what, scene or "")
-    tables = {"views": _views, "settings": _settings, "scenes": _scenes, "bindings": _bindings}
+    tables = {
+        "views": _views,
+        "settings": _settings,
+        "scenes": _scenes,
+        "materials": _materials,
+        "bindings": _bindings,
+    }
     return tables[what]()
 
 
@@ -39,6 +46,30 @@ def _scenes() -> list[str]:
     from elemental.scene.load import scene_names  # noqa: PLC0415 (100 ms to import)
 
     return scene_names()
+
+
+def _materials() -> list[str]:
+    """A material a line, each followed by its parameters, indented."""
+    from elemental.scene.definitions import builtin, definition_names  # noqa: PLC0415 (as above)
+
+    definitions = [builtin(name) for name in definition_names()]
+    rows = [
+        (
+            f"  {p.name}",
+            f"{p.kind} {p.unit}".strip(),
+            p.value_text(p.default),
+            p.range_text(),
+            p.help,
+        )
+        for definition in definitions
+        for p in definition.parameters
+    ]
+    told = iter(_columns(rows))
+    found = []
+    for definition in definitions:
+        found.append(f"{definition.name}: {definition.help}")
+        found += [next(told) for _ in definition.parameters]
+    return found
 
 
 def _views() -> list[str]:

@@ -8,7 +8,6 @@ from pathlib import Path
 
 from elemental import __version__
 from elemental.frame import VIEWS, Frame, Renderer
-from elemental.gpu.device import Device
 from elemental.picture import SUFFIXES, save_picture
 from elemental.report import (
     SCHEMA,
@@ -79,14 +78,15 @@ def shoot(shot: Shot) -> None:
         if is_sequence or index == shot.frames - 1:
             file = frame_file(shot.output, index)
             save_picture(file, renderer.read(frame), frame.is_linear)
-    report = _report(shot, stage, device, frame, wall_ms)
+    report = _report(shot, stage, renderer, frame, wall_ms)
     if shot.report is not None:
         write_json(shot.report, report)
     say(report["warnings"], report["notes"])
     print(frame_file(shot.output, shot.frames - 1))
 
 
-def _report(shot: Shot, stage: Stage, device: Device, frame: Frame, wall_ms: float) -> Report:
+def _report(shot: Shot, stage: Stage, renderer: Renderer, frame: Frame, wall_ms: float) -> Report:
+    device = renderer.device
     passes = [PassEntry(name=t.name, gpu_ms=t.gpu_ms, cpu_ms=t.cpu_ms) for t in device.timings]
     counters = {name: int(count) for name, count in frame.counters.items()}
     return {
@@ -109,6 +109,6 @@ def _report(shot: Shot, stage: Stage, device: Device, frame: Frame, wall_ms: flo
         "counters": counters,
         "bytes": bytes_entry(device),
         "gl_messages": [str(message) for message in device.messages],
-        "warnings": stage.scene.warnings + overflow_warnings(counters),
+        "warnings": [*stage.scene.warnings, *renderer.problems(), *overflow_warnings(counters)],
         "notes": list(stage.scene.notes),
     }

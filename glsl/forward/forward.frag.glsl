@@ -26,17 +26,17 @@ flat in uint v_material;
 layout(location = 0) out vec4 o_radiance;
 
 vec3 shade_translucent(Surface s, vec3 n_ws, vec3 p_ws) {
-    vec3 to_eye = normalize(u_view.eye_ws - p_ws);
-    DirectLight direct = direct_light(
-        ShadingPoint(p_ws, n_ws, to_eye, s.albedo, s.specular_color, s.specular_power));
+    ShadingPoint point = shading_point(p_ws, n_ws, s.albedo, s.specular_color, s.specular_power,
+                                       s.subsurface_color, s.lighting_model);
+    DirectLight direct = direct_light(point);
     vec3 radiance = s.emissive + direct.diffuse + direct.specular;
 #if GI
     vec4 diffuse_gi = texelFetch(u_diffuse_gi, ivec2(gl_FragCoord.xy), 0);
-    vec3 mirrored = sky_radiance(reflect(-to_eye, n_ws), specular_cone_half_angle(s.specular_power));
-    float n_o_v = clamp(dot(n_ws, to_eye), 0.0, 1.0);
-    vec3 indirect = diffuse_gi.rgb * s.albedo * s.ambient_occlusion;
-    indirect += mirrored * clamp(diffuse_gi.a, 0.0, 1.0) * s.ambient_occlusion
-        * environment_brdf(s.specular_color, s.roughness, n_o_v);
+    vec3 mirrored = sky_radiance(reflect(-point.to_eye, n_ws),
+                                 specular_cone_half_angle(s.specular_power));
+    vec3 indirect = diffuse_gi.rgb * (point.albedo + point.subsurface_color);
+    indirect += mirrored * clamp(diffuse_gi.a, 0.0, 1.0) * point.mirrored;
+    indirect *= s.ambient_occlusion;
     radiance += indirect * u_view.indirect;
 #endif
     return radiance;

@@ -33,20 +33,17 @@ uniform sampler2D u_specular_gi;  // radiance along the mirrored eye ray
 layout(rgba16f) uniform image2D u_scene_color;
 
 vec3 shade_surface(GBufferSurface s, vec3 p_ws, ivec2 pixel) {
-    vec3 to_eye = normalize(u_view.eye_ws - p_ws);
-    ShadingPoint point = ShadingPoint(p_ws, s.normal_ws, to_eye, s.albedo, s.specular_color,
-                                      s.specular_power);
+    ShadingPoint point = shading_point(p_ws, s.normal_ws, s.albedo, s.specular_color,
+                                       s.specular_power, s.subsurface_color, s.lighting_model);
     DirectLight direct = direct_light(point);
     vec3 radiance = direct.diffuse + direct.specular;
     vec3 indirect = vec3(0.0);
 #if DIFFUSE_GI
-    indirect += texelFetch(u_diffuse_gi, pixel, 0).rgb * s.albedo * s.ambient_occlusion;
+    indirect += texelFetch(u_diffuse_gi, pixel, 0).rgb * s.ambient_occlusion
+        * (point.albedo + point.subsurface_color);
 #endif
 #if SPECULAR_GI
-    float roughness = roughness_from_specular_power(s.specular_power);
-    float n_o_v = clamp(dot(s.normal_ws, to_eye), 0.0, 1.0);
-    indirect += texelFetch(u_specular_gi, pixel, 0).rgb * s.ambient_occlusion
-        * environment_brdf(s.specular_color, roughness, n_o_v);
+    indirect += texelFetch(u_specular_gi, pixel, 0).rgb * s.ambient_occlusion * point.mirrored;
 #endif
     return radiance + indirect * u_view.indirect;
 }

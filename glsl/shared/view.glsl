@@ -12,4 +12,5 @@ layout(std140) uniform View {
     float time_s;
     uint frame;
     vec3 indirect;     // multiplies the indirect light that surfaces in view receive
+    float subsurface_reach;  // m: thickest body that light shines through
 } u_view;

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from elemental.scene.model import Camera, Environment, Light
+from formulas import environment_brdf
 from gpu.rig import IDENTITY, UNLIT, MakeRig, at, camera, material, mesh, scene, sun, vector
 from shapes import quad, sphere
 
@@ -18,9 +19,10 @@ ABOVE = camera(vector(0.1, 4, 0.2), vector(0, 0, 0), fov_y=0.5)
 def expected(
     p: Array, n: Array, to_light: Array, irradiance: float | Array, view: Camera = ABOVE
 ) -> Array:
-    """Radiance of a white dielectric of roughness 1 in float64: Lambert plus the slides' Gaussian
-    specular at the smallest power, with Schlick's Fresnel."""
-    albedo, f0, power = 1.0, 0.04, 0.5
+    """Radiance of a white dielectric of roughness 1 in float64: Lambert, as far as the mirrored
+    share leaves it, plus the slides' Gaussian specular at the smallest power, with Schlick's
+    Fresnel and its energy balanced."""
+    f0, power = 0.04, 0.5
     eye = view.world_from_view[:3, 3].astype(np.float64)
     v = eye - p
     v /= np.linalg.norm(v, axis=-1, keepdims=True)
@@ -30,7 +32,11 @@ def expected(
     angle = np.arccos(np.power(0.04, 1.0 / power))
     norm_angle = (np.clip(np.sum(n * h, axis=-1), 0, 1) - 1) / (np.cos(angle) - 1)
     fresnel = f0 + (1 - f0) * (1 - np.sum(v * h, axis=-1)) ** 5
-    specular = fresnel * np.exp(-(norm_angle**2)) * lambert / (angle**2 * 10)
+    specular = fresnel * np.exp(-(norm_angle**2)) * lambert / (angle**2 * 2 * np.pi**1.5)
+    mirrored = environment_brdf(
+        f0, (2 / (power + 2)) ** 0.25, np.clip(np.sum(n * v, axis=-1), 0, 1)
+    )
+    albedo = np.minimum(1.0, 1.0 - mirrored)
     return irradiance * (albedo / np.pi * lambert + specular)
 
 

@@ -71,7 +71,6 @@ class ShaderLibrary:
         fallbacks = {n: self._snippets[key].fallback(not loaded) for n, key in shader.snippets}
         program = compile_program(self._device, shader, fallbacks)
         self._failures[shader] = problem
-        _log.error("%s shows its fallback:\n%s", shader.name, problem)
         return program
 
     def _texts_of(self, snippets: Snippets) -> dict[str, SnippetText]:

@@ -39,9 +39,10 @@ def pack_view(
     time_s: float = 0.0,
     frame: int = 0,
     indirect: tuple[float, float, float] = (1.0, 1.0, 1.0),
+    subsurface_reach: float = 0.03,
 ) -> Block:
     """The block View of glsl/shared/view.glsl. size: (width, height) px; exposure: a factor;
-    indirect: factors on the indirect light that surfaces receive."""
+    indirect: factors on the indirect light that surfaces receive; subsurface_reach: m."""
     width, height = size
     far = far_plane(camera, bounds)
     view_from_world = transforms.inverse(camera.world_from_view)
@@ -61,4 +62,5 @@ def pack_view(
         time_s=time_s,
         frame=frame,
         indirect=indirect,
+        subsurface_reach=subsurface_reach,
     )

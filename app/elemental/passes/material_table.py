@@ -104,10 +104,18 @@ class MaterialTable:
     def _told(self, raw: bytes) -> None:
         self._faulty = np.frombuffer(raw, "<u4")
 
-    @property
-    def faulty(self) -> list[int]:
-        """Materials that wrote infinities or what is no number, as far as the GPU has told."""
-        return np.flatnonzero(self._faulty[: len(self._scene.materials)]).tolist()
+    def faults(self) -> list[str]:
+        """A line for each material that wrote infinities or what is no number, as far as is known.
+
+        Such pixels show the magenta checker.
+        """
+        materials = self._scene.materials
+        faulty: list[int] = np.flatnonzero(self._faulty[: len(materials)]).tolist()
+        return [
+            f"{material_snippets.label(materials[n].definition.file)}: material "
+            f"{materials[n].name!r}: writes what is no finite number"
+            for n in faulty
+        ]
 
     def release(self) -> None:
         """Free the buffers."""

@@ -29,6 +29,7 @@ from elemental.scene.model import (
 )
 from elemental.scene.motion import RigBuilder
 from elemental.scene.scene_file import SceneFile, flat_settings, read_scene_file
+from elemental.scene.scene_materials import dress
 from elemental.scene.scene_motions import Movers, described
 from elemental.scene.tables.cameras import CameraTable, PathTable
 from elemental.scene.tables.lights import EnvironmentTable, LightTable
@@ -63,6 +64,7 @@ def load_scene_file(path: Path, animation: str | None = None) -> Scene:
         node = movers.node_at("light", light.name, light.position)
         light.node = builder.node(node, _light_turn(light)) if node >= 0 else -1
     _place_models(scene, file, wanted, builder, movers)
+    dress(scene, file.materials)
     movers.check()
     scene.motion = builder.motion()
     scene.environment = _environment(file.environment, path) if file.environment else None

@@ -170,12 +170,13 @@ def read_definition(path: Path) -> MaterialDefinition:
         raise InputError(path, "heading", f"is broken TOML ({error})") from error
     told = {key: table.pop(key, default) for key, default in (
         ("help", ""), ("animated", False), ("displacement_m", 0.0), ("emits", []),
-        ("parameters", {}),
+        ("standard", False), ("parameters", {}),
     )}  # fmt: skip
     if table:
         raise InputError(path, min(table), "is an unknown key")
     for key, kind, wanted in (
         ("help", str, "a text"), ("animated", bool, "true or false"),
+        ("standard", bool, "true or false"),
         ("displacement_m", int | float, "a length in m"), ("emits", list, "a list of names"),
         ("parameters", dict, "a table"),
     ):  # fmt: skip
@@ -183,11 +184,15 @@ def read_definition(path: Path) -> MaterialDefinition:
             raise InputError(path, key, f"should be {wanted}")
     if not 0.0 <= told["displacement_m"] <= DISPLACEMENT_MAX_M:
         raise InputError(path, "displacement_m", f"should be 0 to {DISPLACEMENT_MAX_M:g}")
+    parameters = [read_parameter(n, t, path) for n, t in told["parameters"].items()]
+    if told["standard"]:
+        names = {parameter.name for parameter in parameters}
+        parameters += [p for p in builtin(STANDARD).parameters if p.name not in names]
     definition = MaterialDefinition(
         name=path.stem,
         file=path,
         help=told["help"],
-        parameters=tuple(read_parameter(n, t, path) for n, t in told["parameters"].items()),
+        parameters=tuple(parameters),
         emits=tuple(told["emits"]),
         animated=told["animated"],
         displacement_m=float(told["displacement_m"]),

@@ -79,6 +79,11 @@ TABLE = (
     Setting("ambient_cubemap.tint", "color", (1.0, 1.0, 1.0), "tint of that light",
             lo=0, hi=1, volume=True),
     Setting(
+        "shading.subsurface_reach", "float", 0.03,
+        "thickness of the thickest bodies that light shines through",
+        unit="m", lo=0, hi=1000, source="[Mittring12]",
+    ),
+    Setting(
         "lights.culling", "bool", True,
         "find out which of many point and spot lights reach which part of view and scene",
         source="[Olsson12]",

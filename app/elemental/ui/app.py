@@ -200,7 +200,7 @@ class App:
     def _reload_shaders(self) -> None:
         """Take over edited shaders; what does not compile is told and its old program kept."""
         self.device.reload_changed_shaders()
-        self.problems = self.device.library.problems()
+        self.problems = self.renderer.problems()
 
     def _fly(self) -> None:
         held = self.window.held

@@ -1,0 +1,80 @@
+"""A scene file's materials: artist's definitions and values for what the models bring along."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fnmatch import fnmatchcase
+from pathlib import Path
+
+from elemental.core.errors import InputError
+from elemental.core.images import read_png_jpeg_webp
+from elemental.scene.definitions import SHARED, MaterialDefinition, find_definition
+from elemental.scene.materials import Material, Texture, TextureSlot
+from elemental.scene.model import Scene
+from elemental.scene.parameters import PLAIN_TEXTURES
+from elemental.scene.tables.materials import MaterialTable
+
+
+def dress(scene: Scene, tables: Sequence[MaterialTable]) -> None:
+    """Apply each table to the materials that its name, a pattern, fits; later ones come on top.
+
+    Raises InputError for a name that fits none, and for an unknown definition, parameter, value or
+    image.
+    """
+    images: dict[Path, int] = {}
+    for number, table in enumerate(tables):
+        field = f"materials[{number}]"
+        fitting = [n for n, m in enumerate(scene.materials) if fnmatchcase(m.name, table.name)]
+        if not fitting:
+            known = ", ".join(repr(m.name) for m in scene.materials)
+            reason = f"no material is named {table.name!r}; known: {known or 'none'}"
+            raise InputError(scene.path, f"{field}.name", reason)
+        definition = None
+        if table.shader is not None:
+            folder = scene.path.parent
+            definition = find_definition(table.shader, folder, scene.path, f"{field}.shader")
+        for index in fitting:
+            worn = _worn(scene.materials[index], table, definition)
+            scene.materials[index] = _valued(worn, table, scene, f"{field}.parameters", images)
+
+
+def _worn(
+    material: Material, table: MaterialTable, definition: MaterialDefinition | None
+) -> Material:
+    if definition is not None:
+        material = material.with_definition(definition)
+    if table.double_sided is not None:
+        material = replace(material, double_sided=table.double_sided)
+    return material
+
+
+def _valued(
+    material: Material, table: MaterialTable, scene: Scene, field: str, images: dict[Path, int]
+) -> Material:
+    for name, value in table.parameters.items():
+        try:
+            checked = material.definition.check_value(name, value)
+            parameter = material.definition.parameter(name)
+            if parameter is None or parameter.kind != "texture":
+                material = material.with_value(name, value)
+                continue
+        except InputError as error:
+            raise InputError(scene.path, f"{field}.{name}", error.reason) from None
+        if checked in PLAIN_TEXTURES and name not in SHARED:
+            material = material.with_value(name, checked)
+        else:
+            slot = _image(scene, str(checked), f"{field}.{name}", images)
+            material = material.with_texture(name, slot)
+    return material
+
+
+def _image(scene: Scene, name: str, field: str, images: dict[Path, int]) -> TextureSlot:
+    """An image beside the scene file as one of the scene's textures, each read once."""
+    path = scene.path.parent / name
+    if path not in images:
+        if not path.is_file():
+            raise InputError(scene.path, field, f"{name} does not exist")
+        images[path] = len(scene.textures)
+        scene.textures.append(Texture(path.stem, read_png_jpeg_webp(path)))
+    return TextureSlot(images[path])
