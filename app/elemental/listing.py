@@ -64,7 +64,7 @@ def _materials() -> list[str]:
         for definition in definitions
         for p in definition.parameters
     ]
-    told = iter(_columns(rows))
+    told = iter(columns(rows))
     found = []
     for definition in definitions:
         found.append(f"{definition.name}: {definition.help}")
