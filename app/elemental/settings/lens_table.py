@@ -1,4 +1,4 @@
-"""The rows of what happens in the lens: bloom, dirt."""
+"""The rows of what happens in the lens: bloom, dirt, depth of field."""
 
 from __future__ import annotations
 
@@ -30,4 +30,18 @@ LENS_TABLE = (
     Setting("bloom.dirt_intensity", "float", 1.0, "factor on that dirt", lo=0, hi=8, volume=True),
     Setting("bloom.dirt_tint", "color", (0.5, 0.5, 0.5), "tint of that dirt",
             lo=0, hi=1, volume=True),
+    # Off by default: what is in focus is a scene's or a shot's to say.
+    Setting("dof.enabled", "bool", False, "depth of field", volume=True),
+    Setting("dof.focal_distance", "float", 1000.0, "distance along the view that is sharp",
+            unit="cm", lo=1, hi=10000, volume=True),
+    Setting("dof.f_stop", "float", 4.0, "focal length over aperture: divides the size of the blur",
+            lo=1, hi=32, volume=True),
+    Setting("dof.near_transition", "float", 300.0,
+            "how far before the focus the blur is fully grown",
+            unit="cm", lo=0, hi=10000, volume=True),
+    Setting("dof.far_transition", "float", 500.0,
+            "how far behind the focus the blur is fully grown",
+            unit="cm", lo=0, hi=10000, volume=True),
+    Setting("dof.max_bokeh_size", "float", 15.0, "diameter of the fully grown blur at f/1",
+            unit="% of the width", lo=0, hi=32, volume=True),
 )  # fmt: skip

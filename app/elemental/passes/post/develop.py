@@ -13,6 +13,7 @@ from elemental.gpu.graph import Graph
 from elemental.gpu.refs import TextureHandle
 from elemental.passes.gbuffer import GBuffer
 from elemental.passes.post.bloom import bloom
+from elemental.passes.post.dof import depth_of_field
 from elemental.passes.post.film import film_block
 from elemental.passes.post.fxaa import fxaa
 from elemental.passes.post.history import PostHistory
@@ -34,6 +35,7 @@ def develop(
     """
     s = settings
     history.advance(view)
+    scene_color = depth_of_field(g, view, scene_color, gb.depth, s)
     blooms = s["bloom.intensity"] > 0.0
     half = downsample(g, scene_color) if blooms or history.eye.is_on(s) else None
     exposed = history.eye.update(g, half, s, history.elapsed_s)
