@@ -75,15 +75,16 @@ class Frame:
 
     image: Texture
     is_linear: bool
+    lights: Mapping[str, int]
     voxels: VoxelLighting | None
     specular: SpecularCounters
 
     @property
     def counters(self) -> dict[str, int]:
-        """What the GPU has reported so far: complete after Device.finish."""
+        """Shadow maps, and what the GPU has reported so far: complete after Device.finish."""
         if self.voxels is None:
-            return {}
-        return {**self.voxels.counters(), **self.specular.counters()}
+            return dict(self.lights)
+        return {**self.lights, **self.voxels.counters(), **self.specular.counters()}
 
 
 class Renderer:
@@ -192,7 +193,9 @@ class Renderer:
         g.keep(image)
         g.execute()
         assert image.physical is not None, "a kept handle has a texture once its graph has run"
-        return Frame(image.physical, view in LINEAR_VIEWS, voxels, self._specular)
+        return Frame(
+            image.physical, view in LINEAR_VIEWS, self._shadows.counts, voxels, self._specular
+        )
 
     def _declare(
         self,
@@ -350,6 +353,7 @@ def _shadow_settings(settings: Settings) -> ShadowSettings:
         resolution=settings["shadow.resolution"],
         cascades=settings["shadow.cascades"],
         reach=settings["shadow.distance"],
+        budget=settings["shadow.budget"],
         culling=settings["lights.culling"],
         cutoff=settings["lights.cutoff"] / 2.0 ** settings["exposure"],
     )

@@ -132,11 +132,14 @@ def settings_entry(settings: Settings) -> dict[str, Any]:
 
 def overflow_warnings(counters: Mapping[str, int]) -> list[str]:
     """One line for each counter of dropped things that is not zero, with what helps."""
-    remedies = {"octree_bricks_dropped": "; raise gi.memory_budget_mb or lower gi.resolution"}
+    remedies = {
+        "octree_bricks_dropped": "; raise gi.memory_budget_mb or lower gi.resolution",
+        "lights_without_shadow": "; raise shadow.budget",
+    }
     return [
         f"{count:,} {name.replace('_', ' ')}{remedies.get(name, '')}"
         for name, count in counters.items()
-        if "dropped" in name and count
+        if count and ("dropped" in name or name in remedies)
     ]
 
 

@@ -16,16 +16,20 @@ const float SHADOW_OFFSET_BASE = 0.5;
 const float SHADOW_CASCADE_MARGIN = 4.0;
 
 // 3x3 tent over bilinear comparisons in four taps: the taps sit where the hardware's own 2x2
-// weights add up to the tent's [Castano13 "Shadow Mapping Summary"].
-float shadow_tent_3x3(vec2 uv, float layer, float depth) {
+// weights add up to the tent's [Castano13 "Shadow Mapping Summary"]. uv: in the view's tile, which
+// the taps do not leave.
+float shadow_tent_3x3(uint view, vec2 uv, float depth) {
     float size = float(textureSize(u_shadow_maps, 0).x);
-    vec2 texel_px = uv * size;
+    float layer = shadow_views[view].layer;
+    vec2 low = shadow_views[view].offset_uv;
+    vec2 high = low + shadow_views[view].scale - 0.5 / size;
+    vec2 texel_px = (low + uv * shadow_views[view].scale) * size;
     vec2 base = floor(texel_px + 0.5);
     vec2 s = texel_px + 0.5 - base;
     vec2 weight0 = 3.0 - 2.0 * s;
     vec2 weight1 = 1.0 + 2.0 * s;
-    vec2 tap0 = (base - 0.5 + (2.0 - s) / weight0 - 1.0) / size;
-    vec2 tap1 = (base - 0.5 + s / weight1 + 1.0) / size;
+    vec2 tap0 = clamp((base - 0.5 + (2.0 - s) / weight0 - 1.0) / size, low + 0.5 / size, high);
+    vec2 tap1 = clamp((base - 0.5 + s / weight1 + 1.0) / size, low + 0.5 / size, high);
     float lit = weight0.x * weight0.y * texture(u_shadow_maps, vec4(tap0, layer, depth));
     lit += weight1.x * weight0.y * texture(u_shadow_maps, vec4(tap1.x, tap0.y, layer, depth));
     lit += weight0.x * weight1.y * texture(u_shadow_maps, vec4(tap0.x, tap1.y, layer, depth));
@@ -53,7 +57,7 @@ float view_visibility(uint view, vec3 p_ws, vec3 n_ws, vec3 to_light, float offs
     if (p.w <= 0.0) return 1.0;
     vec3 coordinate = p.xyz / p.w * 0.5 + 0.5;
     if (any(greaterThan(abs(coordinate.xy - 0.5), vec2(0.5))) || coordinate.z >= 1.0) return 1.0;
-    return shadow_tent_3x3(coordinate.xy, float(view), coordinate.z - shadow_views[view].depth_bias);
+    return shadow_tent_3x3(view, coordinate.xy, coordinate.z - shadow_views[view].depth_bias);
 }
 
 uint cube_face(vec3 direction) {

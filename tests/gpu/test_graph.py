@@ -258,6 +258,20 @@ def test_copy_of_a_layer(device: Device) -> None:
     assert other.physical.read()[:, 0, 0].tolist() == [9, 4, 9]
 
 
+def test_copy_of_a_tile(device: Device) -> None:
+    graph = device.begin_frame()
+    four, other = (graph.texture(name, (4, 4), R32UI, layers=2) for name in ("four", "other"))
+    graph.clear_texture(four, (4,))
+    graph.clear_texture(other, (9,))
+    graph.copy_texture(four, other, layer=1, tile=(1, 2, 2, 1))
+    graph.keep(other)
+    graph.execute()
+    assert other.physical
+    wanted = np.full((2, 4, 4), 9)
+    wanted[1, 2, 1:3] = 4
+    np.testing.assert_array_equal(other.physical.read(), wanted)
+
+
 def test_clear_and_copy(device: Device) -> None:
     graph = device.begin_frame()
     color = graph.texture("color", (8, 4), RGBA16F, mips=2)

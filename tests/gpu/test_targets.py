@@ -266,6 +266,30 @@ def test_depth_is_tested_written_and_sampled(device: Device, sources: Sources, f
     np.testing.assert_array_equal(texels[:, 1], [0, 0, 1, 1])
 
 
+def test_clears_keep_to_a_tile(device: Device, sources: Sources) -> None:
+    """Passes before one that clears a tile stay: even those into the only layer of an array."""
+    shader = sources.full_screen("o_color = vec4(0.25); gl_FragDepth = 0.25;")
+    state = RasterState(depth_test="always")
+    graph = device.begin_frame()
+    color = graph.texture("color", (4, 4), R32F)
+    depth = graph.texture("depth", (4, 4), D32F, layers=1)
+    targets = {"color": color, "depth": Layer(depth, 0), "state": state}
+    graph.raster(shader, **targets)
+    graph.raster(
+        shader, **targets, clear_color=(0.5,) * 4, clear_depth=1.0, tile=(1, 0, 2, 3), vertices=0
+    )
+    graph.raster(shader, **targets, tile=(3, 3, 1, 1))
+    graph.keep(color)
+    graph.keep(depth)
+    graph.execute()
+    assert color.physical
+    assert depth.physical
+    cleared = np.zeros((4, 4), bool)
+    cleared[:3, 1:3] = True
+    np.testing.assert_array_equal(color.physical.read(), np.where(cleared, 0.5, 0.25))
+    np.testing.assert_array_equal(depth.physical.read()[0], np.where(cleared, 1.0, 0.25))
+
+
 def test_stencil_masks_and_is_sampled_beside_depth(device: Device, sources: Sources) -> None:
     mark = sources.full_screen("o_color = vec4(1);")
     show = sources.full_screen(

@@ -204,6 +204,9 @@ class Executor:
         gl = self.gl
         raster_state.prepare_clear(gl)
         self._state = None
+        if node.tile is not None:
+            gl.glEnable(c.SCISSOR_TEST)
+            gl.glScissor(*node.tile)
         for number, clear in enumerate(clears):
             if clear is not None:
                 self._clear_color(number, clear, color[number][0].format.kind)
@@ -216,6 +219,8 @@ class Executor:
                 stencil = 0
             if stencil is not None:
                 gl.glClearBufferiv(c.STENCIL, 0, ctypes.byref(ctypes.c_int(stencil)))
+        if node.tile is not None:
+            gl.glDisable(c.SCISSOR_TEST)
 
     def _clear_color(self, number: int, color: Sequence[float], kind: str) -> None:
         if kind == "uint":
@@ -265,8 +270,9 @@ class Executor:
             for level in range(source.mips):
                 width, height, slices = source.extent(level)
                 first, count = (0, slices) if node.layer is None else (node.layer, 1)
-                ends = (source.glo, source.target, level, 0, 0, first)
-                to = (target.glo, target.target, level, 0, 0, first)
+                x, y, width, height = node.tile or (0, 0, width, height)
+                ends = (source.glo, source.target, level, x, y, first)
+                to = (target.glo, target.target, level, x, y, first)
                 gl.glCopyImageSubData(*ends, *to, width, height, count)
             return
         gl.glBindBuffer(c.COPY_READ_BUFFER, source.glo)

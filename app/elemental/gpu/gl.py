@@ -222,6 +222,7 @@ _FUNCTIONS: dict[str, tuple[Any, ...]] = {
     "glClearBufferuiv": (None, _U, _I, _P),
     "glClearBufferiv": (None, _U, _I, _P),
     "glClearBufferfi": (None, _U, _I, _F, _I),
+    "glScissor": (None, _I, _I, _I, _I),
     "glViewport": (None, _I, _I, _I, _I),
     "glCullFace": (None, _U),
     "glDepthFunc": (None, _U),

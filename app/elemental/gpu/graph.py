@@ -169,6 +169,7 @@ class Graph:
         clear_depth: float | None = None,
         clear_stencil: int | None = None,
         viewport: tuple[int, int, int, int] | None = None,
+        tile: tuple[int, int, int, int] | None = None,
         size: tuple[int, int] | None = None,
         draw: Callable[[Encoder], None] | None = None,
         vertices: int = 3,
@@ -177,8 +178,10 @@ class Graph:
     ) -> None:
         """A draw into targets of one size, or into none (``size`` given).
 
-        ``vertices=3`` is a full-screen triangle from gl_VertexID. ``draw`` issues draws itself;
-        transient buffers that it draws from are listed in ``uses``. Raises GraphError.
+        ``tile``: a viewport (x, y, width, height) that clears keep to, too, where ``viewport`` lets
+        them fill the targets. ``vertices=3`` is a full-screen triangle from gl_VertexID. ``draw``
+        issues draws itself; transient buffers that it draws from are listed in ``uses``. Raises
+        GraphError.
         """
         program = self.device.program(shader)
         node = RasterPass(name or program.name, program, state)
@@ -190,17 +193,18 @@ class Graph:
         node.size = size or (0, 0)
         clears = clear_list(clear_color, len(targets), node.name)
         for target, clear in zip(targets, clears, strict=True):
-            attachment = self._attach(node, target, cleared=clear is not None)
+            attachment = self._attach(node, target, cleared=clear is not None and tile is None)
             node.color.append((*attachment, clear))
         if depth is not None:
             writes_depth = state.depth_write and state.depth_test != "none"
             writes_depth |= state.stencil is not None or clear_stencil is not None
-            cleared = clear_depth is not None
+            writes_depth |= clear_depth is not None
+            cleared = clear_depth is not None and tile is None
             node.depth = self._attach(node, depth, cleared=cleared, written=writes_depth)
             node.clear_depth, node.clear_stencil = clear_depth, clear_stencil
         if node.size == (0, 0):
             raise GraphError(f"{node.name}: a pass without targets needs size=")
-        node.viewport = viewport or (0, 0, *node.size)
+        node.viewport, node.tile = tile or viewport or (0, 0, *node.size), tile
         for used in uses:
             node.reads.append(self._index(used))
         self.passes.append(node)
@@ -243,15 +247,22 @@ class Graph:
         node.span = (src_offset, dst_offset, length)
         self._add_copy(node, c.BUFFER_UPDATE_BARRIER, length == dst.nbytes)
 
-    def copy_texture(self, src: AnyTexture, dst: AnyTexture, layer: int | None = None) -> None:
-        """Copy every texel of every level, or of one ``layer``; both have one description."""
+    def copy_texture(
+        self,
+        src: AnyTexture,
+        dst: AnyTexture,
+        layer: int | None = None,
+        tile: tuple[int, int, int, int] | None = None,
+    ) -> None:
+        """Copy every texel of every level, of one ``layer``, or of a ``tile`` (x, y, width, height)
+        of a texture of one level; both have one description."""
         if src.desc != dst.desc:
             raise GraphError(f"copy {src.name} to {dst.name}: {src.desc} is not {dst.desc}")
         if layer is not None and not 0 <= layer < (src.desc.layers or 0):
             raise GraphError(f"copy {src.name}: it has no layer {layer}")
         node = Copy(f"copy {src.name}", self._index(src), self._index(dst))
-        node.layer = layer
-        self._add_copy(node, c.TEXTURE_UPDATE_BARRIER, layer is None)
+        node.layer, node.tile = layer, tile
+        self._add_copy(node, c.TEXTURE_UPDATE_BARRIER, layer is None and tile is None)
 
     def _add_copy(self, node: Copy, bit: int, whole: bool) -> None:
         node.reads.append(node.source)

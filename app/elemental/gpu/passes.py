@@ -54,7 +54,7 @@ class RasterPass(Pass):
 
     __slots__ = (
         "clear_depth", "clear_stencil", "color", "depth", "draw", "instances", "missing",
-        "program", "size", "state", "vertices", "viewport",
+        "program", "size", "state", "tile", "vertices", "viewport",
     )  # fmt: skip
 
     def __init__(self, name: str, program: Program, state: RasterState) -> None:
@@ -68,6 +68,7 @@ class RasterPass(Pass):
         self.missing: frozenset[str] = frozenset()
         self.size = (0, 0)
         self.viewport = (0, 0, 0, 0)
+        self.tile: tuple[int, int, int, int] | None = None
         self.draw: Callable[[Encoder], None] | None = None
         self.vertices = 3
         self.instances = 1
@@ -94,16 +95,17 @@ class ClearBuffer(Pass):
 
 
 class Copy(Pass):
-    """A copy between two buffers (``span``: source offset, target offset, bytes) or textures, whole
-    or a ``layer``."""
+    """A copy between two buffers (``span``: source offset, target offset, bytes), or of textures,
+    of a ``layer`` or of a ``tile``."""
 
-    __slots__ = ("layer", "source", "span", "target")
+    __slots__ = ("layer", "source", "span", "target", "tile")
 
     def __init__(self, name: str, source: int, target: int) -> None:
         super().__init__(name)
         self.source, self.target = source, target
         self.span: tuple[int, int, int] | None = None
         self.layer: int | None = None
+        self.tile: tuple[int, int, int, int] | None = None
 
 
 class Readback(Pass):

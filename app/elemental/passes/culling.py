@@ -60,9 +60,19 @@ class Culling:
 
 def in_frustum(clip_from_world: Array, low: Array, high: Array) -> Array:
     """(N,) bool: which boxes low, high (N, 3) are not wholly outside one of the six planes."""
-    m = clip_from_world.astype(np.float64)
-    planes = np.concatenate([m[3] + m[:3], m[3] - m[:3]])
+    return np.asarray(_inside(clip_from_world[None], low, high)[0])
+
+
+def views_with_any(clip_from_world: Array, low: Array, high: Array) -> Array:
+    """(V,) bool: which of the matrices (V, 4, 4) have any of the boxes in their frustum."""
+    return np.asarray(_inside(clip_from_world, low, high).any(axis=1))
+
+
+def _inside(matrices: Array, low: Array, high: Array) -> Array:
+    """(V, N) bool of `in_frustum`."""
+    m = matrices.astype(np.float64)
+    planes = np.concatenate([m[:, 3:] + m[:, :3], m[:, 3:] - m[:, :3]], axis=1)
     center, half = (low.astype(np.float64) + high) / 2, (high.astype(np.float64) - low) / 2
-    reach = half @ np.abs(planes[:, :3]).T
-    distance = center @ planes[:, :3].T + planes[:, 3]
-    return np.asarray(np.all(distance + reach >= 0.0, axis=1))
+    normals = planes[..., :3].swapaxes(1, 2)
+    nearest = center @ normals + half @ np.abs(normals) + planes[:, None, :, 3]
+    return np.asarray(np.all(nearest >= 0.0, axis=2))

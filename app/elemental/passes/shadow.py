@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Hashable, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -23,12 +24,13 @@ from elemental.gpu.refs import Layer, Ref, Sampled
 from elemental.gpu.resources import Buffer, Texture
 from elemental.gpu.shaders import Raster
 from elemental.gpu.state import RasterState
-from elemental.passes.culling import in_frustum
+from elemental.passes.culling import views_with_any
 from elemental.passes.material_pack import BASE_COLOR_SLOT
 from elemental.passes.material_table import material_shader
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.scene_pack import MASKED, Array, Batch
-from elemental.passes.shadow_plan import ShadowPlan, ShadowSettings, plan_shadows
+from elemental.passes.shadow_plan import ShadowPlan, ShadowPlanner, ShadowSettings
+from elemental.passes.shadow_tiles import Tile
 from elemental.scene.model import Camera, Light
 
 VERT, FRAG = "shadow/depth.vert.glsl", "shadow/depth.frag.glsl"
@@ -49,16 +51,18 @@ class ShadowMaps:
     def __init__(self, device: Device, settings: ShadowSettings) -> None:
         self._device = device
         self.settings = settings
+        self.planner = ShadowPlanner(settings)
         self.light_key: Hashable = None
         self.lamp_key: Hashable = None
+        self.counts: dict[str, int] = {}
         self.culled = False
         self.light_words = 1
         self._maps: Texture | None = None
         self._buffers: dict[str, Buffer] = {}
         self._uploaded: dict[str, bytes] = {}
-        self._drawn: dict[int, bytes] = {}
+        self._drawn: dict[Tile, bytes] = {}
         self._still: Texture | None = None
-        self._still_drawn: dict[int, bytes] = {}
+        self._still_drawn: dict[Tile, bytes] = {}
         self._dynamic = b""
         self._drawn_version = 0
 
@@ -93,18 +97,25 @@ class ShadowMaps:
         self._allocate(plan.layers, bool(scene.dynamic.any() and not scene.dynamic.all()))
         self._upload("Lights", plan.lights)
         self._upload("LightBounds", plan.bounds)
-        self._upload("ShadowViews", plan.views)
+        same_views = not self._upload("ShadowViews", plan.views)
         self.culled, self.light_words = plan.culled, -(-len(plan.lights) // 32)
+        self.counts = {"shadow_maps": len(plan.views), "lights_without_shadow": plan.unshadowed}
         light_fields = [name for name in plan.lights.dtype.names or () if "cascade" not in name]
-        fixed = plan.views[: plan.fixed]
+        fixed = plan.views[: plan.fixed][["clip_from_world", "texel"]]
         self.lamp_key = (plan.lights[light_fields].tobytes(), fixed.tobytes())
         self.light_key = (scene.version, self.lamp_key)
         self._forget_changed(plan, scene)
+        for drawn in (self._drawn, self._still_drawn):
+            if not same_views:
+                for tile in drawn.keys() - set(plan.tiles):
+                    del drawn[tile]
+        if same_views and len(self._drawn) == len(plan.tiles):
+            return []
         stale = []
-        for number, view in enumerate(plan.views):
+        for number, (tile, view) in enumerate(zip(plan.tiles, plan.views, strict=True)):
             content = view.tobytes()
-            if self._drawn.get(number) != content:
-                self._drawn[number] = content
+            if self._drawn.get(tile) != content:
+                self._drawn[tile] = content
                 stale.append(number)
         return stale
 
@@ -127,33 +138,30 @@ class ShadowMaps:
         if not boxes:
             return
         low, high = (np.array(corners) for corners in zip(*boxes, strict=True))
-        for number in list(self._drawn):
-            if number < len(plan.views):
-                matrix = plan.views[number]["clip_from_world"].T
-                if not in_frustum(matrix, low, high).any():
-                    continue
-            del self._drawn[number]
+        sees = views_with_any(plan.views["clip_from_world"].swapaxes(1, 2), low, high)
+        for number in np.flatnonzero(sees):
+            self._drawn.pop(plan.tiles[number], None)
 
-    def target(self, number: int) -> Layer:
-        """The depth layer of one view."""
+    def target(self, plan: ShadowPlan, number: int) -> Layer:
+        """The depth layer that holds the tile of one view."""
         assert self._maps is not None
-        return Layer(self._maps, number)
+        return Layer(self._maps, plan.tiles[number].layer)
 
-    def still_target(self, number: int, plan: ShadowPlan) -> tuple[Layer, bool] | None:
+    def still_target(self, plan: ShadowPlan, number: int) -> tuple[Layer, bool] | None:
         """The layer of what stands as one view sees it, and whether it has to be drawn anew; None
         where maps are drawn whole."""
         if self._still is None:
             return None
-        content = plan.views[number].tobytes()
-        stale = self._still_drawn.get(number) != content
-        self._still_drawn[number] = content
-        return Layer(self._still, number), stale
+        tile, content = plan.tiles[number], plan.views[number].tobytes()
+        stale = self._still_drawn.get(tile) != content
+        self._still_drawn[tile] = content
+        return Layer(self._still, tile.layer), stale
 
-    def copy_still(self, g: Graph, number: int) -> None:
+    def copy_still(self, g: Graph, tile: Tile) -> None:
         """Begin a view's map with what stands."""
         assert self._still is not None
         assert self._maps is not None
-        g.copy_texture(self._still, self._maps, layer=number)
+        g.copy_texture(self._still, self._maps, layer=tile.layer, tile=_rectangle(tile))
 
     def _allocate(self, layers: int, moves: bool) -> None:
         """At least so many layers; a single texel where no light may look."""
@@ -177,10 +185,11 @@ class ShadowMaps:
         if moves and layers:
             self._still = maps("shadow.still_maps")
 
-    def _upload(self, name: str, values: Array) -> None:
+    def _upload(self, name: str, values: Array) -> bool:
+        """Whether it differs from what was uploaded last."""
         content = values.tobytes()
         if self._uploaded.get(name) == content:
-            return
+            return False
         buffer = self._buffers.get(name)
         if buffer is not None and self._uploaded.get(name) and buffer.nbytes == len(content):
             buffer.write(content)
@@ -189,6 +198,7 @@ class ShadowMaps:
                 buffer.release()
             self._buffers[name] = self._device.buffer(name, content, dynamic=True)
         self._uploaded[name] = content
+        return True
 
 
 def update_shadows(
@@ -201,24 +211,30 @@ def update_shadows(
     size: tuple[int, int],
 ) -> ShadowMaps:
     """Bring every map up to date and return `maps`, ready to be read. size: px of the picture."""
-    plan = plan_shadows(lights, scene.bounds, camera, size, maps.settings)
+    plan = maps.planner.plan(lights, scene.bounds, camera, size)
     for number in maps.place(plan, scene):
         _draw_view(g, maps, scene, plan, number)
     return maps
 
 
+def _rectangle(tile: Tile) -> tuple[int, int, int, int]:
+    """(x, y, width, height)"""
+    return tile.x, tile.y, tile.side, tile.side
+
+
 def _draw_view(g: Graph, maps: ShadowMaps, scene: GpuScene, plan: ShadowPlan, number: int) -> None:
-    name = f"shadow.{plan.names[number]}"
+    tile, name = plan.tiles[number], f"shadow.{plan.names[number]}"
     scene.look(f"shadow.{number}", plan.views[number]["clip_from_world"].T)
-    still = maps.still_target(number, plan)
+    still = maps.still_target(plan, number)
+    draw = partial(_draw_casters, g, maps, scene, number, tile)
     if still is None:
-        _draw_casters(g, maps, scene, number, name, maps.target(number), None)
+        draw(name, maps.target(plan, number), None)
         return
     target, stale = still
     if stale:
-        _draw_casters(g, maps, scene, number, f"{name}.still", target, False)
-    maps.copy_still(g, number)
-    _draw_casters(g, maps, scene, number, name, maps.target(number), True)
+        draw(f"{name}.still", target, False)
+    maps.copy_still(g, tile)
+    draw(name, maps.target(plan, number), True)
 
 
 def _draw_casters(
@@ -226,6 +242,7 @@ def _draw_casters(
     maps: ShadowMaps,
     scene: GpuScene,
     number: int,
+    tile: Tile,
     name: str,
     target: Layer,
     dynamic: bool | None,
@@ -242,9 +259,10 @@ def _draw_casters(
     views = {"ShadowViews": maps.reads()["ShadowViews"]}
     reads = {"Instances": scene.instances, **views}
     params = {"ShadowPass": pack(layouts().block("ShadowPass"), view=np.uint32(number))}
+    place = _rectangle(tile)
     g.raster(
         DEPTH, name, depth=target, reads=reads, params=params, state=STATE,
-        clear_depth=None if dynamic else 1.0, draw=draw_opaque,
+        clear_depth=None if dynamic else 1.0, tile=place, draw=draw_opaque,
     )  # fmt: skip
     masked: dict[Raster, list[Batch]] = defaultdict(list)
     for batch in scene.batches(MASKED, dynamic):
@@ -260,7 +278,7 @@ def _draw_casters(
         g.raster(
             shader, f"{name}.masked", depth=target, reads={**scene.reads(), **views},
             writes=scene.materials.writes(batches), params=params | scene.params(), state=STATE,
-            draw=draw_masked,
+            tile=place, draw=draw_masked,
         )  # fmt: skip
 
 

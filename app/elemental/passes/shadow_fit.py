@@ -50,12 +50,13 @@ class FittedView:
 @dataclass(frozen=True)
 class ViewFrustum:
     """What cascades need of the camera: eye (3,), forward (3,) unit, near and far in m, and the
-    tangent of the half angle to the picture's corner."""
+    tangents of the half angles to the picture's upper rim and to its corner."""
 
     eye: FloatArray
     forward: FloatArray
     near: float
     far: float
+    tangent: float
     corner_tangent: float
 
 

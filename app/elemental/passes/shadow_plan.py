@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -13,7 +13,9 @@ from elemental.passes import shadow_fit
 from elemental.passes.camera_view import far_plane
 from elemental.passes.light_pack import light_bounds, pack_lights, reach
 from elemental.passes.scene_pack import Array
+from elemental.passes.shadow_budget import FACES, ShadowBudget, Shares
 from elemental.passes.shadow_fit import Bounds, FittedView, ViewFrustum
+from elemental.passes.shadow_tiles import Tile, TilePool
 from elemental.scene.model import Camera, Light
 
 CULLED_FROM = 5
@@ -23,12 +25,13 @@ CULLED_FROM = 5
 @dataclass(frozen=True)
 class ShadowSettings:
     """resolution: texels a side of each map; cascades: most of them for a directional light;
-    reach: how far they go from the camera in m, 0 = the scene's diagonal. culling: many lights are
-    culled, those without a range at `cutoff` lux."""
+    reach: how far they go from the camera in m, 0 = the scene's diagonal; budget: maps that all
+    lights share. culling: many lights are culled, those without a range at `cutoff` lux."""
 
     resolution: int = 1024
     cascades: int = 3
     reach: float = 0.0
+    budget: int = 32
     culling: bool = True
     cutoff: float = 1e-3
 
@@ -36,66 +39,187 @@ class ShadowSettings:
 @dataclass(frozen=True)
 class ShadowPlan:
     """lights (L,) of the struct Light, never empty; views (V,) of the struct ShadowView, the
-    cascades behind the `fixed` ones, which do not depend on the camera; names by view; `layers`
-    that no camera exceeds. bounds (L, 4) of `light_bounds`; culled: whether they are worth it."""
+    cascades behind the `fixed` ones, which do not depend on the camera; names and tiles by view;
+    `layers` that no camera exceeds; unshadowed: lights that the budget leaves without a map.
+    bounds (L, 4) of `light_bounds`; culled: whether they are worth it."""
 
     lights: Array
     bounds: Array
     culled: bool
     views: Array
     names: list[str]
+    tiles: list[Tile]
     fixed: int
     layers: int
+    unshadowed: int
 
 
-def plan_shadows(
-    lights: Sequence[Light],
-    bounds: Bounds,
-    camera: Camera,
-    size: tuple[int, int],
-    settings: ShadowSettings,
-) -> ShadowPlan:
-    """The views of every light that casts shadows. size: (width, height) px of the picture."""
-    frustum = _frustum(camera, size, bounds)
-    views: dict[str, FittedView] = {}
-    first_view = []
-    for number, light in enumerate(lights):
-        fitted = _fixed_views(light, bounds, settings.resolution) if light.casts_shadow else []
-        first_view.append(len(views) if fitted else -1)
-        views |= {f"{number}.{light.kind}.{k}": view for k, view in enumerate(fitted)}
-    fixed = len(views)
-    cascades = []
-    for number, light in enumerate(lights):
-        first = len(views)
-        if light.kind == "directional" and light.casts_shadow:
-            whole = views[f"{number}.directional.0"]
-            fitted = _cascades(light, bounds, frustum, settings, whole.texel)
-            views |= {f"{number}.cascade.{k}": view for k, view in enumerate(fitted)}
-        cascades.append((first, len(views) - first))
-    suns = sum(light.kind == "directional" and light.casts_shadow for light in lights)
-    culled = settings.culling and len(lights) - _suns(lights) >= CULLED_FROM
-    ranges = [reach(light, settings.cutoff) if culled else light.range for light in lights]
-    return ShadowPlan(
-        lights=pack_lights(lights, first_view, cascades, ranges),
-        bounds=light_bounds(lights, ranges),
-        culled=culled,
-        views=_pack_views(list(views.values())),
-        names=list(views),
-        fixed=fixed,
-        layers=fixed + suns * settings.cascades,
-    )
+@dataclass(frozen=True)
+class PlacedView:
+    """A view by its name, in its tile."""
+
+    name: str
+    fitted: FittedView
+    tile: Tile
 
 
-def _suns(lights: Sequence[Light]) -> int:
-    return sum(light.kind == "directional" for light in lights)
+@dataclass(frozen=True)
+class FixedViews:
+    """Views that no camera moves. first_view by light, -1 without one; packed (V,) of the struct
+    ShadowView; names and tiles by view. They hold while `key` does."""
+
+    key: Hashable
+    first_view: list[int]
+    packed: Array
+    names: list[str]
+    tiles: list[Tile]
 
 
-def _fixed_views(light: Light, bounds: Bounds, resolution: int) -> list[FittedView]:
+@dataclass
+class ShadowPlanner:
+    """Plans frame after frame: keeps what does not change, and sizes and tiles where it can.
+
+    Lights are compared as objects: one that changes is replaced by another.
+    """
+
+    settings: ShadowSettings
+    _budget: ShadowBudget = field(init=False)
+    _pool: TilePool = field(init=False)
+    _lights: list[Light] = field(default_factory=list)
+    _reaches: list[float] = field(default_factory=list)
+    _spheres: Array = field(default_factory=lambda: light_bounds([], []))
+    _fitted: dict[int, tuple[Hashable, list[FittedView]]] = field(default_factory=dict)
+    _fixed: FixedViews | None = None
+    _packed: tuple[dict[int, int], Array, Array] | None = None
+
+    def __post_init__(self) -> None:
+        s = self.settings
+        self._budget = ShadowBudget(s.budget, s.resolution, s.cascades)
+        self._pool = TilePool(0, s.resolution)
+
+    def plan(
+        self, lights: Sequence[Light], bounds: Bounds, camera: Camera, size: tuple[int, int]
+    ) -> ShadowPlan:
+        """The views of the lights that get shadow maps. size: (width, height) px of the picture."""
+        self._take_over(lights)
+        frustum = _frustum(camera, size, bounds)
+        shares = self._budget.share(lights, self._spheres, frustum)
+        fixed = self._fixed_views(lights, shares, bounds)
+        cascades = self._cascades(lights, fixed, bounds, frustum)
+        moved = [view for views in cascades.values() for view in views]
+        packed, spheres = self._pack(lights, fixed, {n: len(v) for n, v in cascades.items()})
+        return ShadowPlan(
+            lights=packed,
+            bounds=spheres,
+            culled=self._culled,
+            views=np.concatenate([fixed.packed, _pack_views(moved, self.settings.resolution)]),
+            names=fixed.names + [view.name for view in moved],
+            tiles=fixed.tiles + [view.tile for view in moved],
+            fixed=len(fixed.names),
+            layers=self._pool.layers,
+            unshadowed=shares.unshadowed,
+        )
+
+    @property
+    def _culled(self) -> bool:
+        local = sum(light.kind != "directional" for light in self._lights)
+        return self.settings.culling and local >= CULLED_FROM
+
+    def _take_over(self, lights: Sequence[Light]) -> None:
+        """Look at lights that are not those of the last frame."""
+        known = self._lights
+        same = all(light is last for light, last in zip(lights, known, strict=False))
+        if same and len(lights) == len(known):
+            return
+        self._lights = list(lights)
+        self._reaches = [reach(light, self.settings.cutoff) for light in lights]
+        self._spheres = light_bounds(lights, self._reaches)
+        self._fixed = self._packed = None
+
+    def _fixed_views(self, lights: Sequence[Light], shares: Shares, bounds: Bounds) -> FixedViews:
+        """Those that no camera moves, and a tile for each view."""
+        key = (tuple(shares.sides), bounds[0].tobytes(), bounds[1].tobytes())
+        if self._fixed is not None and self._fixed.key == key:
+            return self._fixed
+        if shares.layers > self._pool.layers:
+            self._pool = TilePool(shares.layers, self.settings.resolution)
+        tiles = self._pool.assign(self._sides(lights, shares.sides))
+        placed: list[PlacedView] = []
+        first_view = []
+        for number, (light, side) in enumerate(zip(lights, shares.sides, strict=True)):
+            first_view.append(len(placed) if side else -1)
+            for k, view in enumerate(self._fit(number, light, bounds, side) if side else []):
+                name = f"{number}.{light.kind}.{k}"
+                placed.append(PlacedView(name, view, tiles[number, k]))
+        self._packed = None
+        self._fixed = FixedViews(
+            key,
+            first_view,
+            _pack_views(placed, self.settings.resolution),
+            [view.name for view in placed],
+            [view.tile for view in placed],
+        )
+        return self._fixed
+
+    def _sides(self, lights: Sequence[Light], sides: Sequence[int]) -> dict[Hashable, int]:
+        """Of each tile that is needed, by the number of its light and of its view there."""
+        more = {"directional": self.settings.cascades}
+        return {
+            (number, k): side
+            for number, (light, side) in enumerate(zip(lights, sides, strict=True))
+            if side
+            for k in range(FACES[light.kind] + more.get(light.kind, 0))
+        }
+
+    def _fit(self, number: int, light: Light, bounds: Bounds, side: int) -> list[FittedView]:
+        """Views of one light, fitted anew where the light or its share changed."""
+        shape = (light.kind, light.range, light.outer_angle, side)
+        place = (light.position.tobytes(), light.direction.tobytes())
+        key = (shape, place, bounds[0].tobytes(), bounds[1].tobytes())
+        if number not in self._fitted or self._fitted[number][0] != key:
+            self._fitted[number] = key, _fit(light, bounds, side)
+        return self._fitted[number][1]
+
+    def _cascades(
+        self, lights: Sequence[Light], fixed: FixedViews, bounds: Bounds, frustum: ViewFrustum
+    ) -> dict[int, list[PlacedView]]:
+        """By the number of the sun."""
+        found = {}
+        for number, first in enumerate(fixed.first_view):
+            if lights[number].kind != "directional" or first < 0:
+                continue
+            coarsest = float(fixed.packed["texel"][first])
+            views = _cascades(lights[number], bounds, frustum, self.settings, coarsest)
+            found[number] = [
+                PlacedView(f"{number}.cascade.{k}", view, self._pool.held[number, 1 + k])
+                for k, view in enumerate(views)
+            ]
+        return found
+
+    def _pack(
+        self, lights: Sequence[Light], fixed: FixedViews, cascades: dict[int, int]
+    ) -> tuple[Array, Array]:
+        """(the struct Light of each, their bounds); cascades: how many by the number of the sun."""
+        if self._packed is None or self._packed[0] != cascades:
+            spans = [(0, 0)] * len(lights)
+            first = len(fixed.names)
+            for number, count in cascades.items():
+                spans[number] = first, count
+                first += count
+            ranges, spheres = self._reaches, self._spheres
+            if not self._culled:
+                ranges = [light.range for light in lights]
+                spheres = light_bounds(lights, ranges)
+            self._packed = cascades, pack_lights(lights, fixed.first_view, spans, ranges), spheres
+        return self._packed[1:]
+
+
+def _fit(light: Light, bounds: Bounds, side: int) -> list[FittedView]:
     if light.kind == "directional":
-        return [shadow_fit.scene_view(light, bounds, resolution)]
+        return [shadow_fit.scene_view(light, bounds, side)]
     if light.kind == "spot":
-        return [shadow_fit.spot_view(light, bounds, resolution)]
-    return shadow_fit.point_views(light, bounds, resolution)
+        return [shadow_fit.spot_view(light, bounds, side)]
+    return shadow_fit.point_views(light, bounds, side)
 
 
 def _cascades(
@@ -122,15 +246,22 @@ def _frustum(camera: Camera, size: tuple[int, int], bounds: Bounds) -> ViewFrust
         forward=-matrix[:3, 2] / np.linalg.norm(matrix[:3, 2]),
         near=camera.near,
         far=far_plane(camera, bounds),
+        tangent=tangent,
         corner_tangent=math.hypot(tangent, tangent * size[0] / size[1]),
     )
 
 
-def _pack_views(fitted: Sequence[FittedView]) -> Array:
+def _pack_views(placed: Sequence[PlacedView], resolution: int) -> Array:
+    """(V,) of the GLSL struct ShadowView."""
+    matrices = [view.fitted.clip_from_world for view in placed]
+    tiles = np.array([view.tile for view in placed], np.float32).reshape(-1, 4)
     return pack_array(
         layouts().struct("ShadowView"),
-        len(fitted),
-        clip_from_world=np.array([view.clip_from_world for view in fitted]).reshape(-1, 4, 4),
-        texel=[view.texel for view in fitted],
-        depth_bias=[shadow_fit.DEPTH_BIAS] * len(fitted),
+        len(placed),
+        clip_from_world=np.array(matrices).reshape(-1, 4, 4),
+        texel=[view.fitted.texel for view in placed],
+        depth_bias=[shadow_fit.DEPTH_BIAS] * len(placed),
+        layer=tiles[:, 0],
+        scale=tiles[:, 3] / resolution,
+        offset_uv=tiles[:, 1:3] / resolution,
     )

@@ -101,6 +101,11 @@ TABLE = (
     Setting("shadow.cascades", "int", 3, "shadow maps of a directional light along the view",
             unit="maps", lo=1, hi=4),
     Setting(
+        "shadow.budget", "int", 32,
+        "shadow maps of that size that all lights share; four of half the side count as one",
+        unit="maps", lo=0, hi=1024,
+    ),
+    Setting(
         "shadow.distance", "float", 0.0,
         "reach of directional shadows from the camera; 0 takes the scene's size",
         unit="m", lo=0, hi=100000,
