@@ -106,6 +106,10 @@ def _add_shot_flags(parser: _Parser) -> None:
     flag("--target", "X,Y,Z", _vector, None, "point looked at in metres (default: the camera's)")
     flag("--fov", "DEG", _number(1, 179), None, "vertical angle, degrees (default: the camera's)")
     flag("--view", "NAME", str, "final", "a buffer of `elemental list views` (default: final)")
+    parser.add_argument(
+        "--ui", action="store_true", help="draw the panel around the picture (default: off)"
+    )
+    flag("--ui-page", "NAME", str, None, "the same with a page in front (default: Settings)")
     flag("--report", "R.json", Path, None, "also write times in ms and bytes (default: none)")
 
 
@@ -113,6 +117,12 @@ def _add_run_flags(parser: _Parser) -> None:
     _add_common_flags(parser)
     parser.add_argument(
         "--fullscreen", action="store_true", help="cover the primary monitor (default: off)"
+    )
+    parser.add_argument(
+        "--panel",
+        action=argparse.BooleanOptionalAction,
+        default=None,
+        help="show the panel at first (default: as it was left, F5 changes it)",
     )
     flag = parser.flag
     flag("--frames", "N", _whole(1, 10**9), None, "exit after N frames (default: never)")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -68,6 +68,10 @@ LINEAR_VIEWS = frozenset({"scene_color", "diffuse_gi", "specular_gi", "voxels", 
 SPECULAR_VIEWS = frozenset({"specular_gi", "specular_traced"})
 OCTREE_VIEWS = frozenset({"diffuse_gi", *SPECULAR_VIEWS, *STEP_VIEWS, *VOXEL_VIEWS})
 
+OCTREE_KEYS = frozenset({"gi.resolution", "gi.memory_budget_mb", "gi.area_lights"})
+SHADOW_KEYS = frozenset({"shadow.resolution", "shadow.cascades", "shadow.distance"})
+"""Settings that the octree and the shadow maps are made for."""
+
 
 @dataclass
 class Frame:
@@ -115,6 +119,8 @@ class Renderer:
         self._specular = SpecularCounters()
         self.spreads_gathers = False
         """Whether further gathers of a moving scene are spread over frames, to keep up with it."""
+        self.looker: Callable[[Graph], None] | None = None
+        """Adds passes that look at the frame's targets, once all others are declared."""
 
     def resize(self, size: tuple[int, int]) -> None:
         """Draw the next frame at ``size``, or smaller where the driver can't."""
@@ -131,13 +137,33 @@ class Renderer:
         """Replace one of the scene's materials from the next frame on."""
         self._meshes.set_material(index, material)
         if self._area_lights or material.emits:
-            self._area_lights = self._choose_area_lights()
-            self._area_block = pack_area_lights(self._area_lights)
-            self._followed = None
-            self._meshes.set_area_lights(self._area_lights)
+            self._update_area_lights()
         brightest = sizing.max_emission(self.scene, self._area_lights)
         if self._voxels is not None and brightest > self._voxels.octree.max_emission:
-            self._voxels.release()  # made anew for that range
+            self._drop_voxels()  # made anew for that range
+
+    def set_settings(self, settings: Settings) -> None:
+        """Take these settings from the next frame on; what was made for others is made anew."""
+        before, self.settings = self.settings, settings
+        changed = {key for key in settings if settings[key] != before[key]}
+        if changed & SHADOW_KEYS:
+            self._shadows.release()
+            self._shadows = ShadowMaps(self.device, _shadow_settings(settings))
+            self.invalidate("light")
+        if "gi.area_lights" in changed:
+            self._update_area_lights()
+        if changed & OCTREE_KEYS:
+            self._drop_voxels()
+
+    def _update_area_lights(self) -> None:
+        self._area_lights = self._choose_area_lights()
+        self._area_block = pack_area_lights(self._area_lights)
+        self._followed = None
+        self._meshes.set_area_lights(self._area_lights)
+
+    def _drop_voxels(self) -> None:
+        if self._voxels is not None:
+            self._voxels.release()
             self._voxels = None
 
     def problems(self) -> list[str]:
@@ -149,8 +175,7 @@ class Renderer:
         """Replace the scene's regions, and with them leaf levels, from the next frame on."""
         self.scene.regions = list(regions)
         if self._voxels is not None and not self._voxels.set_grid(self._grid()):
-            self._voxels.release()  # made anew
-            self._voxels = None
+            self._drop_voxels()  # made anew
 
     def _grid(self) -> Grid:
         resolution = self.settings["gi.resolution"]
@@ -191,6 +216,8 @@ class Renderer:
         image = self._declare(g, camera, lights, time_s, frame, view, voxels)
         self._meshes.materials.watch_faults(g)
         g.keep(image)
+        if self.looker is not None:
+            self.looker(g)
         g.execute()
         assert image.physical is not None, "a kept handle has a texture once its graph has run"
         return Frame(
@@ -328,8 +355,7 @@ class Renderer:
 
     def release(self) -> None:
         """Free everything on the device."""
-        if self._voxels is not None:
-            self._voxels.release()
+        self._drop_voxels()
         self._post.release()
         self._sky.release()
         self._shadows.release()

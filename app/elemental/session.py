@@ -78,13 +78,9 @@ def open_scene(name: str | None, assignments: Iterable[str]) -> tuple[Scene, Set
         default_lights=False,
         animation=asked[ANIMATION] if is_asked else None,
     )
-    exposure = fixed_exposure_ev(scene) if scene.exposure_ev is None else scene.exposure_ev
-    known = scene.exposure_ev is not None or exposure != 0.0
-    given = {"exposure": exposure, **(FIXED_EXPOSURE if known else {}), **scene.settings}
-    own = Settings().replace(given, str(scene.path))
-    settings = Settings.parse(texts, own)
-    if scene.exposure_ev is None and settings["exposure"] == exposure != 0.0:
-        note_exposure(scene, exposure)
+    settings = Settings.parse(texts, own_settings(scene))
+    if scene.exposure_ev is None and settings["exposure"] == fixed_exposure_ev(scene) != 0.0:
+        note_exposure(scene, settings["exposure"])
     if settings["sky.image"]:
         radiance = read_environment(Path(settings["sky.image"]))
         scene.environment = Environment(radiance, np.ones(3, np.float32), 1.0)
@@ -92,6 +88,14 @@ def open_scene(name: str | None, assignments: Iterable[str]) -> tuple[Scene, Set
         add_default_lights(scene)
     note_emission_only(scene)
     return scene, settings
+
+
+def own_settings(scene: Scene) -> Settings:
+    """The settings by the scene's file alone, without ``--set``. Raises InputError."""
+    exposure = fixed_exposure_ev(scene) if scene.exposure_ev is None else scene.exposure_ev
+    known = scene.exposure_ev is not None or exposure != 0.0
+    given = {"exposure": exposure, **(FIXED_EXPOSURE if known else {}), **scene.settings}
+    return Settings().replace(given, str(scene.path))
 
 
 @dataclass(frozen=True)

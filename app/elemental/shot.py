@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from elemental import __version__
+from elemental.core.errors import InputError
 from elemental.frame import VIEWS, Frame, Renderer
 from elemental.picture import SUFFIXES, save_picture
 from elemental.report import (
@@ -52,6 +53,8 @@ class Shot:
     view: str
     assignments: list[str]
     report: Path | None
+    ui: bool = False
+    ui_page: str | None = None
 
 
 def shoot(shot: Shot) -> None:
@@ -66,6 +69,9 @@ def shoot(shot: Shot) -> None:
     known_name("--view", shot.view, list(VIEWS))
     viewpoint = Viewpoint(shot.camera, shot.eye, shot.target, shot.fov)
     stage = set_stage(shot.scene, shot.assignments, viewpoint, shot.size)
+    if shot.ui or shot.ui_page is not None:
+        _shoot_panel(shot, stage)
+        return
     device = headless_device()
     renderer = Renderer(device, stage.scene, stage.settings, shot.size)
     is_sequence = FRAME_NUMBER.search(shot.output.name) is not None
@@ -82,6 +88,32 @@ def shoot(shot: Shot) -> None:
     if shot.report is not None:
         write_json(shot.report, report)
     say(report["warnings"], report["notes"])
+    print(frame_file(shot.output, shot.frames - 1))
+
+
+def _shoot_panel(shot: Shot, stage: Stage) -> None:
+    """The same pictures as an artist sees them, the panel around the scene."""
+    from elemental.ui.desk import Words  # noqa: PLC0415 (ImGui takes 200 ms to import)
+    from elemental.ui.headless import HeadlessDesk  # noqa: PLC0415
+
+    if shot.output.suffix.lower() != ".png":
+        raise InputError("-o", str(shot.output), "a picture with the panel is a .png")
+    if shot.report is not None:
+        raise InputError("--report", str(shot.report), "not together with --ui")
+    screen = HeadlessDesk(headless_device(), stage, Words(shot.scene, shot.assignments), shot.size)
+    desk = screen.desk
+    desk.view, desk.rides = shot.view, stage.camera_moves
+    if shot.ui_page is not None:
+        pages = [page.name for page in desk.workspace.pages]
+        desk.workspace.bring_to_front(known_name("--ui-page", shot.ui_page, pages))
+    is_sequence = FRAME_NUMBER.search(shot.output.name) is not None
+    for index in range(shot.frames):
+        desk.clock.time_s = shot.time + index / shot.fps
+        screen.draw()
+        desk.device.finish()
+        if is_sequence or index == shot.frames - 1:
+            save_picture(frame_file(shot.output, index), screen.read(), False)
+    say(stage.scene.warnings, stage.scene.notes)
     print(frame_file(shot.output, shot.frames - 1))
 
 

@@ -2,9 +2,11 @@
 #include "lib/tonemap.glsl"
 
 uniform sampler2D u_radiance;
+in vec2 v_uv;
 out vec4 o_color;
 
 void main() {
-    vec3 radiance = texelFetch(u_radiance, ivec2(gl_FragCoord.xy), 0).rgb;
+    ivec2 size = textureSize(u_radiance, 0);
+    vec3 radiance = texelFetch(u_radiance, min(ivec2(v_uv * vec2(size)), size - 1), 0).rgb;
     o_color = vec4(srgb_encode(radiance), 1.0);
 }

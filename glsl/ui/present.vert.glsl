@@ -1,4 +1,7 @@
-// One triangle over the whole window, from the vertex number alone.
+// One triangle over the whole area, from the vertex number alone.
+out vec2 v_uv;
+
 void main() {
-    gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);
+    v_uv = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0;
+    gl_Position = vec4(2.0 * v_uv - 1.0, 0.0, 1.0);
 }

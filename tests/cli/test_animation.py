@@ -152,9 +152,9 @@ window = Window(words.size, "", words.fullscreen)
 app = App(window, stage, words)
 
 def moved():
-    app.clock.advance(0.1)
+    app.desk.clock.advance(0.1)
     app.draw(window.framebuffer_size())
-    return len(app.renderer._meshes.changes)
+    return len(app.desk.renderer._meshes.changes)
 
 print(*[moved() for _ in range(3)][1:])
 app.act("pause")
@@ -162,7 +162,7 @@ print(*[moved() for _ in range(2)])
 app.act("step")
 print(moved())
 app.act("camera.pick", 1)
-sinking = app.fly.camera().world_from_view[1, 3]
+sinking = app.desk.fly.camera().world_from_view[1, 3]
 print(1.0 < sinking < 4.0)
 app.release()
 """
@@ -170,7 +170,9 @@ app.release()
 
 def test_a_window_plays_and_pauses(tmp_path: Path, display: str) -> None:
     """One thing moves in each frame, none while paused; a camera is where it is by then."""
-    environment = os.environ | {"PYTHONPATH": str(APP), "DISPLAY": display}
+    environment = os.environ | {
+        "PYTHONPATH": str(APP), "DISPLAY": display, "XDG_CONFIG_HOME": str(tmp_path / "config")
+    }  # fmt: skip
     result = subprocess.run(
         [sys.executable, "-c", WINDOW], cwd=tmp_path, env=environment,
         capture_output=True, text=True, check=False,

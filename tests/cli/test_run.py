@@ -22,7 +22,9 @@ SMALL = ("--size", "96x64", "--set", "gi.resolution=64", "--set", "shadow.resolu
 
 def test_thirty_frames_and_out(tmp_path: Path, display: str) -> None:
     write_corner(tmp_path)
-    result = elemental("run", "corner.gltf", *SMALL, "--frames", 30, cwd=tmp_path, DISPLAY=display)
+    result = elemental(
+        "run", "corner.gltf", *SMALL, "--frames", 30, cwd=tmp_path, **environment(tmp_path, display)
+    )
     assert (result.returncode, result.stderr) == (0, "")
     assert [path.name for path in tmp_path.iterdir()] == ["corner.gltf"]  # no imgui.ini
 
@@ -30,7 +32,7 @@ def test_thirty_frames_and_out(tmp_path: Path, display: str) -> None:
 def test_fullscreen_and_back_out(tmp_path: Path, display: str) -> None:
     write_corner(tmp_path)
     words = ("run", "corner.gltf", *SMALL, "--fullscreen", "--frames", 2)
-    result = elemental(*words, cwd=tmp_path, DISPLAY=display)
+    result = elemental(*words, cwd=tmp_path, **environment(tmp_path, display))
     assert (result.returncode, result.stderr) == (0, "")
 
 
@@ -64,30 +66,32 @@ good = shader.read_text()
 
 def picture_after(source):
     shader.write_text(source)
-    app.words = replace(app.words, frames=app.drawn + 2)
+    app.words = replace(app.words, frames=app.desk.drawn + 2)
     app.loop()
-    return app.renderer.read(app.frame).tobytes()
+    return app.desk.renderer.read(app.desk.frame).tobytes()
 
 before = picture_after(good)
 assert picture_after(good + "\\nthis is no GLSL\\n") == before
-assert len(app.problems) == 1 and "tonemap.frag.glsl:" in app.problems[0], app.problems
-assert picture_after(good) == before and app.problems == []
+problems = app.desk.problems
+assert len(problems) == 1 and "tonemap.frag.glsl:" in problems[0], problems
+assert picture_after(good) == before and app.desk.problems == []
 app.release()
 """
 
 
 PANELS = """
-import elemental.ui.app as ui
+import elemental.ui.pages as ui
 from elemental.session import Viewpoint, set_stage
+from elemental.ui.app import App, Run
 from elemental.ui.window import Window
 
-words = ui.Run("corner.gltf", (96, 64), ["gi.enabled=false"], False, 1)
+words = Run("corner.gltf", (96, 64), ["gi.enabled=false"], False, 1, panel=False)
 stage = set_stage(words.scene, words.assignments, Viewpoint(), words.size)
-app = ui.App(Window(words.size, "elemental"), stage, words)
+app = App(Window(words.size, "elemental"), stage, words)
 drawn = []
-ui.draw_hud = lambda figures: drawn.append(figures.size)
-ui.draw_help = lambda: drawn.append("help")
-ui.draw_message = drawn.append
+ui.draw_hud = lambda figures, place, fonts: drawn.append(figures.size)
+ui.draw_keys = lambda place: drawn.append("help")
+ui.draw_message = lambda text, place: drawn.append(text)
 
 def after(action):
     app.act(action)
@@ -95,14 +99,22 @@ def after(action):
     app.draw((96, 64))
     return list(drawn)
 
+app.draw((96, 64))
+assert after("hud") == [(96, 64)], drawn
 assert after("pause") == [(96, 64), "paused"], drawn
 assert after("pause") == [(96, 64), "playing"], drawn
 assert after("help") == ["help", "playing"], drawn
 assert after("help") == [(96, 64), "playing"], drawn
 app.device.storage_limit = 16 + 4 * 96 * 16
-assert after("hud") == ["playing"] and app.renderer.size == (48, 32), app.renderer.size
+assert after("hud") == ["playing"] and app.desk.renderer.size == (48, 32), app.desk.renderer.size
 app.release()
 """
+
+
+def environment(folder: Path, display: str) -> dict[str, str]:
+    """The tests' environment with a display, and the user's settings beside ``folder``."""
+    home = {"XDG_CONFIG_HOME": str(folder.with_name(f"{folder.name}.config"))}
+    return os.environ | {"PYTHONPATH": str(APP), "DISPLAY": display} | home
 
 
 def run_python(code: str, *words: str, folder: Path, display: str) -> tuple[int, str]:
@@ -111,7 +123,7 @@ def run_python(code: str, *words: str, folder: Path, display: str) -> tuple[int,
     result = subprocess.run(
         [sys.executable, "-c", code, *words],
         cwd=folder,
-        env=os.environ | {"PYTHONPATH": str(APP), "DISPLAY": display},
+        env=environment(folder, display),
         capture_output=True,
         text=True,
         check=False,
@@ -140,14 +152,14 @@ def test_help_covers_the_figures_and_a_size_the_driver_cannot_draw_is_scaled(
 @pytest.mark.skipif(shutil.which("xdotool") is None, reason="xdotool is not installed")
 def test_keys_mouse_and_a_storm_of_sizes(tmp_path: Path, display: str) -> None:
     write_corner(tmp_path)
-    environment = os.environ | {"PYTHONPATH": str(APP), "DISPLAY": display}
+    variables = environment(tmp_path, display)
 
     def act(*words: str) -> None:
-        subprocess.run(["xdotool", *words], env=environment, check=True, timeout=60)
+        subprocess.run(["xdotool", *words], env=variables, check=True, timeout=60)
 
     command = [sys.executable, "-m", "elemental", "run", "corner.gltf", *SMALL]
     with subprocess.Popen(
-        command, cwd=tmp_path, env=environment, stderr=subprocess.PIPE, text=True
+        command, cwd=tmp_path, env=variables, stderr=subprocess.PIPE, text=True
     ) as process:
         try:
             act("search", "--sync", "--onlyvisible", "--name", "elemental", "windowfocus")

@@ -387,7 +387,7 @@ def test_present_fills_the_window_and_leaves_its_framebuffer_bound(
         "o_color = 0.5 * texture(u_image, v_uv);", "uniform sampler2D u_image; out vec4 o_color;"
     )
     device.gl.glEnable(c.SCISSOR_TEST)
-    device.present(image, (6, 4), (half, "u_image") if through else None)
+    device.present(image, (0, 0, 6, 4), (half, "u_image") if through else None)
     assert (window.read() == (50 if through else 100)).all()
     assert device.gl.integer(0x8CA6) == stand_in  # GL_DRAW_FRAMEBUFFER_BINDING
     image.release()

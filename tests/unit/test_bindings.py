@@ -9,7 +9,7 @@ from elemental.ui.bindings import BINDINGS
 
 
 def test_no_key_does_two_things() -> None:
-    keys = [key for binding in BINDINGS for key in binding.keys]
+    keys = [(key, binding.ctrl) for binding in BINDINGS for key in binding.keys]
     assert len(keys) == len(set(keys))
     actions = [binding.action for binding in BINDINGS]
     assert len(actions) == len(set(actions))
@@ -27,3 +27,4 @@ def test_keys_read_as_on_a_keyboard() -> None:
     assert texts["step"] == "."
     assert texts["fly.up"] == "E or Page Up"
     assert texts["help"] == "F1"
+    assert texts["undo"] == "Ctrl+Z"

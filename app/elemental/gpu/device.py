@@ -280,18 +280,25 @@ class Device:
     def present(
         self,
         texture: Texture,
-        size: tuple[int, int],
+        area: screen.Area,
         through: tuple[Raster, str] | None = None,
+        onto: Texture | None = None,
     ) -> None:
-        """Put ``texture`` on the window's framebuffer of ``size`` pixels and leave that bound.
+        """Put ``texture`` on ``area`` of the window's framebuffer and leave that bound.
 
         ``through``: a full-screen program and the name by which it samples the texture; without
-        it the texels are copied.
+        it the texels are copied. ``onto``: a texture that stands for the window.
         """
         if through is None:
-            screen.copy(self, texture, size)
+            screen.copy(self, texture, area, onto)
         else:
-            screen.draw(self, *through, texture, size)
+            screen.draw(self, *through, texture, area, onto)
+
+    def clear_screen(
+        self, color: tuple[float, float, float] = (0.0, 0.0, 0.0), onto: Texture | None = None
+    ) -> None:
+        """Fill the window, or ``onto``, and leave it bound for draws outside of graphs."""
+        screen.clear(self, onto, color)
 
     def release(self) -> None:
         """Free everything the device made for itself, then the context."""

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 from imgui_bundle import imgui
 
+from elemental.ui import theme
 from elemental.ui.bindings import BINDINGS
+from elemental.ui.theme import Fonts
+from elemental.ui.widgets import Rect
 
-RED = imgui.ImVec4(1.0, 0.3, 0.25, 1.0)
-GREY = imgui.ImVec4(0.7, 0.7, 0.7, 1.0)
 MARGIN_PX = 10.0
 BACKGROUND_OPACITY = 0.85
 
@@ -21,6 +22,7 @@ _PANEL = (
     | imgui.WindowFlags_.no_focus_on_appearing.value
     | imgui.WindowFlags_.no_nav.value
     | imgui.WindowFlags_.no_inputs.value
+    | imgui.WindowFlags_.no_docking.value
 )
 _TABLE = imgui.TableFlags_.sizing_fixed_fit.value | imgui.TableFlags_.row_bg.value
 
@@ -51,45 +53,46 @@ class Figures:
     """Shader errors and GL messages that still stand."""
 
 
-def draw_hud(figures: Figures) -> None:
-    """The panel at the top left."""
-    _begin("hud", (MARGIN_PX, MARGIN_PX), (0.0, 0.0))
+def draw_hud(figures: Figures, place: Rect, fonts: Fonts) -> None:
+    """At the top left of the picture's place."""
+    _begin("hud", (place[0] + MARGIN_PX, place[1] + MARGIN_PX), (0.0, 0.0))
+    imgui.push_font(fonts.figures, 0.0)
     width, height = figures.size
     voxels = f"  {figures.voxels}³ voxels" if figures.voxels else ""
     imgui.text_unformatted(f"{figures.scene}  {width}x{height}{voxels}  {figures.view}")
-    _colored(GREY, figures.driver)
+    _colored(theme.MUTED, figures.driver)
     rate = 1e3 / figures.frame_ms if figures.frame_ms > 0 else 0.0
     imgui.text_unformatted(
         f"{rate:.1f} frames/s  {figures.frame_ms:.2f} ms  CPU {figures.cpu_ms:.2f} ms"
     )
     paused = "  paused" if figures.paused else ""
-    _colored(GREY, f"time {figures.time_s:.2f} s{paused}  speed {figures.speed:.3g} m/s")
+    _colored(theme.MUTED, f"time {figures.time_s:.2f} s{paused}  speed {figures.speed:.3g} m/s")
     for problem in figures.problems:
-        _colored(RED, problem)
+        _colored(theme.RED, problem)
     for name, count in figures.counters.items():
         if "dropped" in name and count:
-            _colored(RED, f"{name.replace('_', ' ').upper()}: {count:,}")
+            _colored(theme.RED, f"{name.replace('_', ' ').upper()}: {count:,}")
     rows = [(name, f"{ms:.3f} ms") for name, ms in figures.passes.items()]
     rows.append(("all passes", f"{sum(figures.passes.values()):.3f} ms"))
     _figures("passes", rows)
     _figures("counters", [(n.replace("_", " "), f"{c:,}") for n, c in figures.counters.items()])
     _figures("bytes", [(n, f"{b / 2**20:.1f} MiB") for n, b in figures.bytes.items()])
-    _colored(GREY, "F1 keys, F6 hides this")
+    _colored(theme.MUTED, "F1 keys, F5 panel, F6 hides this")
+    imgui.pop_font()
     imgui.end()
 
 
-def draw_help() -> None:
-    """All bindings, in the middle."""
-    center = imgui.get_main_viewport().get_center()
-    _begin("help", (center.x, center.y), (0.5, 0.5))
+def draw_keys(place: Rect) -> None:
+    """All bindings, in the middle of the picture's place."""
+    _begin("keys", ((place[0] + place[2]) / 2, (place[1] + place[3]) / 2), (0.5, 0.5))
+    _colored(theme.ACCENT, "Keys")
     _two_columns("bindings", [(binding.keys_text(), binding.help) for binding in BINDINGS])
     imgui.end()
 
 
-def draw_message(text: str) -> None:
-    """One line at the bottom."""
-    viewport = imgui.get_main_viewport()
-    _begin("message", (viewport.get_center().x, viewport.size.y - MARGIN_PX), (0.5, 1.0))
+def draw_message(text: str, place: Rect) -> None:
+    """One line at the bottom of the picture's place."""
+    _begin("message", ((place[0] + place[2]) / 2, place[3] - MARGIN_PX), (0.5, 1.0))
     imgui.text_unformatted(text)
     imgui.end()
 
@@ -101,8 +104,8 @@ def _begin(name: str, place: tuple[float, float], pivot: tuple[float, float]) ->
     imgui.begin(name, None, _PANEL)
 
 
-def _colored(color: imgui.ImVec4, text: str) -> None:
-    imgui.push_style_color(imgui.Col_.text.value, color)
+def _colored(rgb: theme.Rgb, text: str) -> None:
+    imgui.push_style_color(imgui.Col_.text.value, theme.color(rgb))
     imgui.text_unformatted(text)
     imgui.pop_style_color()
 

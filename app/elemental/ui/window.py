@@ -92,8 +92,18 @@ class Window:
 
     def held(self, action: str) -> bool:
         """Whether a key of a ``hold`` binding is down."""
-        keys = (key for key, (name, _) in self._held.items() if name == action)
-        return any(glfw.get_key(self.handle, key) == glfw.PRESS for key in keys)
+        if self._is_down(glfw.KEY_LEFT_CONTROL) or self._is_down(glfw.KEY_RIGHT_CONTROL):
+            return False  # Ctrl+S is no flight backwards
+        keys = (key for (key, _), (name, _) in self._held.items() if name == action)
+        return any(self._is_down(key) for key in keys)
+
+    def cursor_px(self) -> tuple[float, float]:
+        """Where the mouse is, in pixels from the window's top left corner."""
+        x, y = glfw.get_cursor_pos(self.handle)
+        scale = glfw.get_framebuffer_size(self.handle)[0] / max(
+            glfw.get_window_size(self.handle)[0], 1
+        )
+        return x * scale, y * scale
 
     def toggle_fullscreen(self) -> None:
         """Cover the primary monitor, or go back to the window's former place."""
@@ -131,6 +141,9 @@ class Window:
         glfw.destroy_window(self.handle)
         glfw.terminate()
 
+    def _is_down(self, key: int) -> bool:
+        return bool(glfw.get_key(self.handle, key) == glfw.PRESS)
+
     def _drag(self) -> tuple[float, float]:
         cursor = glfw.get_cursor_pos(self.handle)
         pressed = any(
@@ -142,17 +155,18 @@ class Window:
         return cursor[0] - before[0], cursor[1] - before[1]
 
     def _on_key(self, _window: Any, key: int, _scancode: int, event: int, modifiers: int) -> None:
-        if event == glfw.PRESS and key in self._actions:
-            self._pressed.append((*self._actions[key], bool(modifiers & glfw.MOD_SHIFT)))
+        found = self._actions.get((key, bool(modifiers & glfw.MOD_CONTROL)))
+        if event == glfw.PRESS and found is not None:
+            self._pressed.append((*found, bool(modifiers & glfw.MOD_SHIFT)))
 
     def _on_scroll(self, _window: Any, _x: float, notches: float) -> None:
         self._scroll += notches
 
 
-def _key_actions(kind: str) -> dict[int, tuple[str, int]]:
-    """GLFW's key numbers of one kind of binding: action and which of the action's keys."""
+def _key_actions(kind: str) -> dict[tuple[int, bool], tuple[str, int]]:
+    """(GLFW key, with Ctrl) of one kind of binding: action and which of the action's keys."""
     return {
-        getattr(glfw, f"KEY_{key}"): (binding.action, index)
+        (getattr(glfw, f"KEY_{key}"), binding.ctrl): (binding.action, index)
         for binding in BINDINGS
         if binding.kind == kind
         for index, key in enumerate(binding.keys)

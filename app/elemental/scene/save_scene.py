@@ -1,0 +1,123 @@
+"""Writing a scene file back: what changed is replaced in place, comments and order are kept.
+
+The text is parsed again before it is written, so a file on disk always says what was meant, and a
+kill in the middle leaves the old file or the new one, whole.
+"""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+from tomlkit.exceptions import TOMLKitError
+
+from elemental.core.errors import InputError
+from elemental.core.files import atomic_file, read_file
+from elemental.scene import toml_edit
+from elemental.scene.load import GLTF_SUFFIXES, SCENE_FILE_SUFFIX
+from elemental.scene.scene_file import flat_settings, parse_scene_file
+from elemental.scene.volume_save import with_volumes
+from elemental.scene.volumes import Volume
+
+SETTINGS = "settings"
+
+_Assign = Callable[[Any, str, str, Any], None]
+
+
+def save_scene(
+    opened: Path,
+    target: Path,
+    settings: Mapping[str, Any],
+    volumes: Sequence[Volume] | None = None,
+) -> None:
+    """Write the scene of ``opened`` to the scene file ``target`` with ``settings`` assigned.
+
+    ``opened`` is a scene file, which is copied but for the changes, or a glTF file, which the new
+    file names as its model. ``settings`` are flat keys; others stay as they are, and so do the
+    volumes unless given. Raises InputError for a target that is no .toml file or can't be written.
+    """
+    if target.suffix.lower() != SCENE_FILE_SUFFIX:
+        raise InputError(target, "", f"a scene is saved as {SCENE_FILE_SUFFIX}")
+    text = _copied(opened, target)
+    if settings:
+        text = _with_settings(text, settings, target)
+    if volumes is not None:
+        text = with_volumes(text, volumes, target)
+    parse_scene_file(text, target)
+    with atomic_file(target.resolve()) as temporary:
+        temporary.write_text(text, encoding="utf-8", newline="")
+
+
+def _copied(opened: Path, target: Path) -> str:
+    """The text to begin with; what it names is named as seen from ``target``."""
+    if opened.suffix.lower() in GLTF_SUFFIXES:
+        document = tomlkit.document()
+        toml_edit.append_table(document, "models", {"file": _relative(opened, target.parent)})
+        return tomlkit.dumps(document)
+    try:
+        text = read_file(opened).decode("utf-8")
+        parse_scene_file(text, opened)
+        if opened.resolve().parent == target.resolve().parent:
+            return text
+        document = tomlkit.parse(text)
+    except (ValueError, TOMLKitError) as error:
+        raise InputError(opened, "TOML", f"is broken ({error})") from error
+    _move_files(document, opened.parent, target.parent)
+    return tomlkit.dumps(document)
+
+
+def _with_settings(text: str, settings: Mapping[str, Any], target: Path) -> str:
+    """The text with settings assigned, and read back to be sure. Raises InputError."""
+    for assign in (toml_edit.assign_setting, _assign_quoted):  # not every layout bears the first
+
+        def assign_all(document: Any, assign: _Assign = assign) -> None:
+            for key, value in settings.items():
+                assign(document, SETTINGS, key, value)
+
+        edited = toml_edit.edited(text, assign_all)
+        if edited is not None and _holds(edited, settings):
+            return edited
+    raise InputError(target, SETTINGS, "can't be changed in this file's layout")
+
+
+def _assign_quoted(document: Any, section: str, key: str, value: Any) -> None:
+    """A setting where the file has it, else under its whole name in quotes."""
+    holder, name, rest = document[section], key, key.split(".")
+    for count, part in enumerate(rest):
+        tail = ".".join(rest[count:])
+        if tail in holder:
+            name = tail
+            break
+        if part not in holder or not isinstance(holder[part], Mapping):
+            holder = document[section]
+            break
+        holder = holder[part]
+    holder[name] = toml_edit.plain(value)
+
+
+def _holds(text: str, settings: Mapping[str, Any]) -> bool:
+    try:
+        found = flat_settings(tomllib.loads(text).get(SETTINGS, {}))
+    except ValueError:
+        return False
+    return all(found.get(key) == toml_edit.plain(value) for key, value in settings.items())
+
+
+def _move_files(document: tomlkit.TOMLDocument, source: Path, target: Path) -> None:
+    """File names count from the scene file's folder: let them name the same files from another."""
+    tables: list[Any] = list(document.get("models", ()))
+    tables += [document["environment"]] if "environment" in document else []
+    for table in tables:
+        if "file" in table:
+            table["file"] = _relative(source / str(table["file"]), target)
+
+
+def _relative(file: Path, folder: Path) -> str:
+    try:
+        return Path(os.path.relpath(file.resolve(), folder.resolve())).as_posix()
+    except ValueError:  # another drive
+        return file.resolve().as_posix()

@@ -1,0 +1,133 @@
+"""What each action of a key or a menu does to the desk."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from elemental.core.errors import InputError
+from elemental.picture import save_picture
+from elemental.scene.evaluate import placed_camera
+from elemental.ui import editor
+from elemental.ui.panel.file_dialog import FileDialog
+
+if TYPE_CHECKING:
+    from elemental.ui.desk import Desk
+
+
+def act(desk: Desk, action: str, index: int = 0, shift: bool = False) -> bool:
+    """Do it; ``index`` tells which of the binding's keys. Returns False for what a window does."""
+    verb, _, word = action.partition(" ")
+    return (
+        _act_on_picture(desk, verb, word, index, shift)
+        or _act_on_document(desk, action, shift)
+        or _act_on_panel(desk, verb, word)
+    )
+
+
+def _act_on_picture(desk: Desk, verb: str, word: str, index: int, shift: bool) -> bool:
+    match verb:
+        case "camera.pick":
+            _pick_camera(desk, index)
+        case "camera.home":
+            desk.rides = desk.stage.camera_moves
+            desk.fly.jump(desk.stage.camera)
+        case "screenshot":
+            _screenshot(desk)
+        case "reload":
+            desk.reload()
+        case "view.next":
+            desk.next_view(-1 if shift else 1)
+        case "view":
+            desk.show_view(word)
+        case "pause":
+            desk.clock.toggle()
+            desk.say("paused" if desk.clock.paused else "playing")
+        case "step":
+            desk.clock.step()
+        case _:
+            return False
+    return True
+
+
+def _act_on_document(desk: Desk, action: str, shift: bool) -> bool:
+    document = desk.document
+    match action:
+        case "undo" if not shift:
+            label = document.undo()
+            desk.say(f"took back: {label}" if label else "nothing to take back")
+        case "undo" | "redo":
+            label = document.redo()
+            desk.say(f"brought back: {label}" if label else "nothing to bring back")
+        case "save" if not shift and desk.stage.scene.path.suffix.lower() == ".toml":
+            save_to(desk, desk.stage.scene.path)
+        case "save" | "save.as":
+            start = editor.default_target(desk.stage.scene).resolve()
+            desk.dialog = FileDialog("Save the scene as", start, (".toml",), True, desk.save_to)
+        case "revert":
+            document.revert()
+        case _:
+            return False
+    return True
+
+
+def _act_on_panel(desk: Desk, verb: str, word: str) -> bool:
+    workspace = desk.workspace
+    match verb:
+        case "help":
+            desk.shows_help = not desk.shows_help
+        case "quit" if desk.shows_help:
+            desk.shows_help = False
+        case "panel":
+            desk.shows_panel = not desk.shows_panel
+        case "hud":
+            desk.shows_hud = not desk.shows_hud
+        case "toggle" if word in workspace.hidden:
+            workspace.bring_to_front(word)
+        case "toggle":
+            workspace.hidden.add(word)
+        case "page":
+            workspace.bring_to_front(word)
+        case "layout.reset":
+            workspace.reset_layout()
+        case "scale":
+            desk.gui.scale = float(word)
+        case _:
+            return False
+    return True
+
+
+def save_to(desk: Desk, path: Path) -> None:
+    """Write the document; from then on it is that file's."""
+    scene = desk.stage.scene
+    try:
+        editor.save(desk.document, scene, path)
+    except InputError as error:
+        desk.say(str(error), "error")
+        return
+    desk.open_saved(path)
+    desk.say(f"saved {path}")
+
+
+def _pick_camera(desk: Desk, index: int) -> None:
+    cameras = desk.stage.scene.cameras
+    if index < len(cameras):
+        desk.rides = False
+        desk.fly.jump(placed_camera(desk.stage.scene, cameras[index], desk.clock.time_s))
+        desk.say(f"camera {index + 1}: {cameras[index].name}")
+    else:
+        desk.say(f"the scene has {len(cameras)} cameras")
+
+
+def _screenshot(desk: Desk) -> None:
+    if desk.frame is None:
+        return
+    stamp = time.strftime("%Y%m%d-%H%M%S")
+    path = Path(f"elemental-{stamp}-{desk.drawn}.png").resolve()
+    try:
+        save_picture(path, desk.renderer.read(desk.frame), desk.frame.is_linear)
+    except InputError as error:
+        desk.say(str(error), "error")
+    else:
+        desk.say(f"wrote {path}")

@@ -1,0 +1,290 @@
+"""A scene on show: its picture, the panel around it, and what the two of them do.
+
+The same in a window and headless: who owns it says how large it is and where it is drawn.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from elemental.core.errors import InputError
+from elemental.frame import VIEWS, Frame, Renderer
+from elemental.gpu.device import Device
+from elemental.gpu.resources import Texture
+from elemental.session import Stage, Viewpoint, set_stage
+from elemental.ui import actions, theme
+from elemental.ui.averages import Averages
+from elemental.ui.clock import SceneClock
+from elemental.ui.editor import Applied, document_of, reopening_words
+from elemental.ui.fly_camera import FlyCamera
+from elemental.ui.gui import Gui
+from elemental.ui.log import Kind, Log
+from elemental.ui.pages import menu_of, overlays, pages_of
+from elemental.ui.panel.file_dialog import FileDialog
+from elemental.ui.preferences import Preferences
+from elemental.ui.present import present
+from elemental.ui.widgets import Rect, Widgets
+from elemental.ui.workspace import SETTLING_FRAMES, Workspace
+
+if TYPE_CHECKING:
+    from elemental.remote.server import Remote
+
+MESSAGE_S = 4.0
+"""How long a message stays."""
+
+
+@dataclass(frozen=True)
+class Words:
+    """What a scene is opened again with."""
+
+    scene: str | None
+    assignments: list[str]
+
+
+class Desk:
+    """One scene, one renderer, one document, one panel. ``onto``: a texture instead of a window."""
+
+    def __init__(
+        self,
+        device: Device,
+        gui: Gui,
+        stage: Stage,
+        words: Words,
+        size: tuple[int, int],
+        preferences: Preferences,
+        *,
+        onto: Texture | None = None,
+        records: bool = False,
+    ) -> None:
+        self.device, self.gui, self.stage, self.words = device, gui, stage, words
+        self.onto = onto
+        self.renderer = Renderer(device, stage.scene, stage.settings, size)
+        self.renderer.spreads_gathers = True
+        self.document = document_of(stage)
+        self.applied = Applied(self.renderer, self.document.state)
+        self.fly = FlyCamera.at(stage.camera, _diagonal(stage))
+        self.rides = stage.camera_moves
+        """Whether the scene moves the camera, until the user does."""
+        self.clock = SceneClock()
+        self.averages = Averages()
+        self.view = "final"
+        self.drawn = 0
+        self.shows_panel, self.shows_hud = preferences.shows_panel, preferences.shows_hud
+        self.shows_help = False
+        self.frame: Frame | None = None
+        self.problems: list[str] = []
+        self.log = Log()
+        self.started = time.perf_counter()
+        self.searched = ""
+        self.dialog: FileDialog | None = None
+        self.window_acts: Callable[[str], None] = lambda _action: None
+        """Does what only a window can."""
+        self.remote: Remote | None = None
+        self._asked: list[str] = []
+        self.wall_s = self.cpu_ms = 0.0
+        self.gui_ms = 0.0
+        """Time of Python and of the driver's calls for the panel."""
+        self._message, self._message_until = "", 0.0
+        gui.scale = preferences.scale
+        self.workspace = Workspace(Widgets(gui.fonts, records), pages_of(self), preferences.layout)
+        self._settling = SETTLING_FRAMES
+        self._log_scene()
+
+    @property
+    def preferences(self) -> Preferences:
+        """What is kept for the next run."""
+        return Preferences(
+            layout=self.workspace.layout(),
+            scale=self.gui.scale,
+            shows_panel=self.shows_panel,
+            shows_hud=self.shows_hud,
+        )
+
+    @property
+    def message(self) -> str:
+        """The line that shows for a while, empty if none does."""
+        return self._message if time.perf_counter() < self._message_until else ""
+
+    def draw(self, size: tuple[int, int], seconds: float) -> None:
+        """Render a frame and show it on ``size`` pixels, the panel around it.
+
+        ``seconds`` have passed since the one before, in the user's time.
+        """
+        began = time.perf_counter()
+        self._follow()
+        has_gui = bool(
+            self.shows_panel or self.shows_hud or self.shows_help or self.message or self.dialog
+        )
+        area = (0, 0, *size)
+        if has_gui:
+            area = self._lay_out(size, seconds)
+        else:
+            self.gui.rest()
+        laid_out = time.perf_counter()
+        if not self.gui.holds:
+            self.document.settle()
+        self._act_on_menus()
+        if self.remote is not None:
+            self._take_over_remote(self.remote)
+        if self.applied.take_over(self.document):
+            self._reopen()
+        self.renderer.resize((area[2], area[3]))
+        if self.rides:
+            self.fly.jump(self.stage.camera_at(self.clock.time_s))
+        self.frame = self.renderer.render(
+            self.fly.camera(), self.clock.time_s, self.drawn, self.view
+        )
+        if area[2:] != size:
+            self.device.clear_screen(theme.BACKDROP, self.onto)
+        present(self.device, self.frame, area, self.onto)
+        presented = time.perf_counter()
+        if has_gui:
+            self.gui.draw()
+        done = time.perf_counter()
+        self.cpu_ms = 1e3 * (presented - laid_out)
+        self.gui_ms = 1e3 * (laid_out - began + done - presented)
+        self.drawn += 1
+
+    def _lay_out(self, size: tuple[int, int], seconds: float) -> tuple[int, int, int, int]:
+        """Make the widgets. Returns the picture's area, from the bottom left corner."""
+        timings = [(timing.name, timing.gpu_ms) for timing in self.device.timings]
+        self.averages.update([("frame", 1e3 * seconds), *timings], seconds)
+        self.wall_s = seconds
+        place: Rect = (0.0, 0.0, *size)
+        while True:
+            self.gui.begin(size, seconds)
+            if self.shows_panel:
+                place = self.workspace.draw(lambda w: menu_of(self, w))
+            overlays(self, place)
+            if self.dialog is not None and self.dialog.draw(self.workspace.widgets):
+                self.dialog = None
+            self.gui.end()
+            if self._settling == 0 or not self.shows_panel:
+                break
+            self._settling -= 1
+        left, top = max(round(place[0]), 0), max(round(place[1]), 0)
+        right, bottom = min(round(place[2]), size[0]), min(round(place[3]), size[1])
+        width, height = max(right - left, 1), max(bottom - top, 1)
+        return min(left, size[0] - 1), max(size[1] - top - height, 0), width, height
+
+    def _follow(self) -> None:
+        """Take over edited shaders; what does not compile is told and its old program kept."""
+        self.device.reload_changed_shaders()
+        self.problems = self.renderer.problems()
+        self.log.follow(self.device.log.messages, self.problems, self._now())
+
+    def act(self, action: str, index: int = 0, shift: bool = False) -> None:
+        """What a binding or a menu item does; ``index`` tells which of the binding's keys."""
+        if not actions.act(self, action, index, shift):
+            self.window_acts(action)
+
+    def menu_act(self, action: str) -> None:
+        """Act once the widgets of this frame are made."""
+        self._asked.append(action)
+
+    def _take_over_remote(self, remote: Remote) -> None:
+        """What is driven from elsewhere is in the document too: it can be seen and saved."""
+        scene = self.stage.scene
+        self.applied.take_over(self.document)
+        remote.update(scene, self.renderer.settings)
+        if tuple(scene.volumes) != self.document.state.volumes:
+            self.document.amend_volumes(tuple(scene.volumes), "remote control")
+
+    def _act_on_menus(self) -> None:
+        asked, self._asked = self._asked, []
+        for action in asked:
+            self.act(action)
+
+    def save_to(self, path: Path) -> None:
+        """Write the scene's file."""
+        actions.save_to(self, path)
+
+    # What is said ------------------------------------------------------------------------------
+
+    def say(self, message: str, kind: Kind = "note") -> None:
+        """Show a line for a while, and log it."""
+        self._message, self._message_until = message, time.perf_counter() + MESSAGE_S
+        self.log.add(kind, message, self._now())
+
+    def _now(self) -> float:
+        return time.perf_counter() - self.started
+
+    def _log_scene(self) -> None:
+        self.log.add_all("warning", self.stage.scene.warnings, self._now())
+        self.log.add_all("note", self.stage.scene.notes, self._now())
+
+    # The scene ---------------------------------------------------------------------------------
+
+    def next_view(self, way: int) -> None:
+        """Show the next buffer view."""
+        names = list(VIEWS)
+        self.show_view(names[(names.index(self.view) + way) % len(names)])
+
+    def show_view(self, name: str) -> None:
+        """Show one of VIEWS."""
+        self.view = name
+        self.say(f"{name}: {VIEWS[name]}")
+
+    def reload(self) -> None:
+        """Read the scene again; a broken one is reported and the old one stays."""
+        try:
+            stage = set_stage(
+                self.words.scene, self.words.assignments, Viewpoint(), self.renderer.size
+            )
+        except InputError as error:
+            self.say(str(error), "error")
+            return
+        self._replace(stage)
+        self.document = document_of(stage)
+        self.applied = Applied(self.renderer, self.document.state)
+        self.say(f"reloaded {stage.scene.name}")
+
+    def open_saved(self, path: Path) -> None:
+        """The scene is another file's from now on."""
+        self.words = Words(str(path), [])
+        self.stage.scene.path = path
+
+    def _reopen(self) -> None:
+        """Read the scene again, by settings that it is read by; a refused edit is taken back."""
+        settings = self.document.state.settings
+        words = reopening_words(settings)
+        try:
+            stage = set_stage(self.words.scene, words, Viewpoint(), self.renderer.size)
+        except InputError as error:
+            self.say(str(error), "error")
+            self.document.refuse()
+            self.applied.state = self.document.state
+            self.renderer.set_settings(self.document.state.settings)
+            return
+        self._replace(replace(stage, settings=settings))
+        stage.scene.volumes = list(self.document.state.volumes)
+        for index, material in enumerate(self.document.state.materials):
+            if material is not self.document.saved.materials[index]:
+                self.renderer.set_material(index, material)
+        self.applied = Applied(self.renderer, self.document.state)
+
+    def _replace(self, stage: Stage) -> None:
+        self.frame = None
+        size = self.renderer.size
+        self.renderer.release()
+        self.stage = stage
+        self.renderer = Renderer(self.device, stage.scene, stage.settings, size)
+        self.renderer.spreads_gathers = True
+        self.fly = replace(self.fly, diagonal=_diagonal(stage))
+        self._log_scene()
+
+    def release(self) -> None:
+        """Free the renderer and ImGui; the device is its maker's."""
+        self.gui.release()
+        self.renderer.release()
+
+
+def _diagonal(stage: Stage) -> float:
+    low, high = stage.scene.bounds()
+    return float(np.linalg.norm(high.astype(np.float64) - low))

@@ -1,0 +1,97 @@
+"""Between the document and the renderer and the scene's file: apply, save, revert."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from elemental.core.errors import InputError
+from elemental.frame import Renderer
+from elemental.scene.model import Scene
+from elemental.scene.save_scene import save_scene
+from elemental.session import Stage, own_settings
+from elemental.settings import SETTINGS, Settings
+from elemental.ui.document import Document, State, same
+
+REBUILDING = frozenset(
+    {
+        "gi.resolution", "gi.memory_budget_mb", "gi.area_lights",
+        "shadow.resolution", "shadow.cascades", "shadow.distance",
+    }
+)  # fmt: skip
+"""Settings that wait for the mouse's release: taking one over costs more than a frame."""
+REOPENING = frozenset({"scene.default_lights", "scene.animation", "sky.image"})
+"""Settings that the scene is read by."""
+
+
+def document_of(stage: Stage) -> Document:
+    """The opened scene as a document; what --set assigned is not on disk."""
+    scene = stage.scene
+    state = State(stage.settings, tuple(scene.materials), tuple(scene.lights), tuple(scene.volumes))
+    on_disk = replace(state, settings=own_settings(scene))
+    return Document(state, on_disk)
+
+
+class Applied:
+    """The state that a renderer shows."""
+
+    def __init__(self, renderer: Renderer, state: State) -> None:
+        self.renderer = renderer
+        self.state = state
+
+    def take_over(self, document: Document) -> bool:
+        """Bring the renderer to the document's state. Returns whether to reopen the scene."""
+        before, after = self.state, document.state
+        if after is before:
+            return False
+        changed = changed_keys(before.settings, after.settings)
+        if changed & REBUILDING and document.in_gesture:
+            return False
+        self.state = after
+        if changed & REOPENING:
+            return True
+        if changed:
+            self.renderer.set_settings(after.settings)
+        if after.volumes is not before.volumes:
+            self.renderer.scene.volumes = list(after.volumes)
+        for index, (old, new) in enumerate(zip(before.materials, after.materials, strict=True)):
+            if new is not old:
+                self.renderer.set_material(index, new)
+        return False
+
+
+def reopening_words(settings: Settings) -> list[str]:
+    """``key=value`` of the settings that the scene is read by."""
+    return [f"{key}={SETTINGS[key].value_text(settings[key])}" for key in sorted(REOPENING)]
+
+
+def changed_keys(before: Settings, after: Settings) -> frozenset[str]:
+    """Keys whose values differ."""
+    if before is after:
+        return frozenset()
+    return frozenset(key for key in after if after[key] != before[key])
+
+
+def save(document: Document, scene: Scene, target: Path) -> None:
+    """Write the document to the scene file ``target``. Raises InputError."""
+    state, saved = document.state, document.saved
+    keys = changed_keys(saved.settings, state.settings)
+    settings = {key: state.settings[key] for key in keys}
+    volumes = None if same(state.volumes, saved.volumes) else state.volumes
+    save_scene(scene.path, target, settings, volumes)
+    document.mark_saved()
+
+
+def default_target(scene: Scene) -> Path:
+    """Where "save" writes: the opened scene file, or one beside the opened glTF file."""
+    return scene.path.with_suffix(".toml")
+
+
+def check_target(text: str) -> Path:
+    """A typed file name as a path to save to. Raises InputError."""
+    path = Path(text).expanduser()
+    if not path.suffix:
+        path = path.with_suffix(".toml")
+    if not path.parent.is_dir():
+        raise InputError(path, "", f"the folder {path.parent} does not exist")
+    return path

@@ -1,0 +1,80 @@
+"""Which pages the panel has, and what of the desk each of them is given."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from elemental.frame import VIEWS
+from elemental.ui.gui import SCALES
+from elemental.ui.hud import Figures, draw_hud, draw_keys, draw_message
+from elemental.ui.panel.menu import MenuState, menu_bar
+from elemental.ui.panel.settings import settings_page
+from elemental.ui.widgets import Rect, Widgets
+from elemental.ui.workspace import Page
+
+if TYPE_CHECKING:
+    from elemental.ui.desk import Desk
+
+
+def pages_of(desk: Desk) -> list[Page]:
+    """The pages over a desk, in the order of their tabs."""
+
+    def settings(w: Widgets) -> None:
+        desk.searched = settings_page(w, desk.document, desk.searched)
+
+    return [
+        Page("Settings", "right", settings, "every setting, with its unit, range and default"),
+    ]
+
+
+def menu_of(desk: Desk, w: Widgets) -> None:
+    """The menu bar over a desk."""
+    document, workspace = desk.document, desk.workspace
+    frame_ms = desk.averages.values.get("frame", 0.0)
+    held = sum(desk.device.bytes().values()) / 2**20
+    state = MenuState(
+        scene=desk.stage.scene.name,
+        unsaved=document.unsaved,
+        undo=document.undo_label,
+        redo=document.redo_label,
+        view=desk.view,
+        views=VIEWS,
+        pages=[page.name for page in workspace.pages],
+        hidden=frozenset(workspace.hidden),
+        scale=desk.gui.scale,
+        scales=SCALES,
+        figures=f"{frame_ms:.1f} ms    {held:,.0f} MiB",
+    )
+    menu_bar(w, state, desk.menu_act)
+
+
+def overlays(desk: Desk, place: Rect) -> None:
+    """What stands over the picture."""
+    if desk.shows_hud and not desk.shows_help and desk.frame is not None:
+        draw_hud(figures_of(desk), place, desk.gui.fonts)
+    if desk.shows_help:
+        draw_keys(place)
+    if desk.message:
+        draw_message(desk.message, place)
+
+
+def figures_of(desk: Desk) -> Figures:
+    """What the HUD tells of the last frame."""
+    passes, settings = dict(desk.averages.values), desk.renderer.settings
+    frame = desk.frame
+    return Figures(
+        scene=desk.stage.scene.name,
+        driver=desk.device.info.renderer,
+        view=desk.view,
+        size=desk.renderer.size,
+        voxels=settings["gi.resolution"] if settings["gi.enabled"] else 0,
+        frame_ms=passes.pop("frame", 0.0),
+        cpu_ms=desk.cpu_ms,
+        passes=passes,
+        counters=frame.counters if frame is not None else {},
+        bytes=desk.device.bytes(),
+        time_s=desk.clock.time_s,
+        paused=desk.clock.paused,
+        speed=desk.fly.speed,
+        problems=desk.problems,
+    )

@@ -1,0 +1,74 @@
+"""Every setting of the table, by group, with its unit, range and default; found by a search."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from elemental.settings import SETTINGS, Setting
+from elemental.ui.document import Document
+from elemental.ui.widgets import Widgets
+
+TITLES = {
+    "gi": "Indirect light",
+    "fxaa": "Antialiasing",
+    "dof": "Depth of field",
+    "ao": "Ambient occlusion",
+    "lut": "Colour grading",
+    "voxels": "Voxel views",
+}
+"""Headings of groups whose name is not a word."""
+FOLDED = frozenset({"voxels", "scene"})
+"""Groups that an artist seldom opens."""
+
+
+def groups(table: Mapping[str, Setting]) -> dict[str, list[Setting]]:
+    """The settings by the first part of their key, in the table's order; alone ones together."""
+    found: dict[str, list[Setting]] = {}
+    for setting in table.values():
+        found.setdefault(setting.key.partition(".")[0], []).append(setting)
+    return found
+
+
+GROUPS = groups(SETTINGS)
+
+
+def settings_page(w: Widgets, document: Document, text: str) -> str:
+    """Draw the page, filtered by what is searched for; returns that text."""
+    text = w.search("search", text)
+    words = text.lower().split()
+    for group, members in GROUPS.items():
+        shown = [setting for setting in members if _matches(setting, words)]
+        if not shown:
+            continue
+        is_open = group not in FOLDED or bool(words)
+        if len(members) > 1 and not w.section(title_of(group), is_open):
+            continue
+        for setting in shown:
+            _row(w, document, setting)
+    return text
+
+
+def title_of(group: str) -> str:
+    """A group's heading."""
+    return TITLES.get(group, group.replace("_", " ").capitalize())
+
+
+def label_of(setting: Setting) -> str:
+    """A setting's name within its group; the unit stands behind its value."""
+    name = setting.key.rpartition(".")[2].removesuffix("_mb")
+    return name.replace("_", " ").capitalize()
+
+
+def _matches(setting: Setting, words: list[str]) -> bool:
+    if not words:
+        return True
+    text = f"{setting.key} {title_of(setting.key.partition('.')[0])} {setting.help}".lower()
+    text += setting.key.replace("_", " ")
+    return all(word in text for word in words)
+
+
+def _row(w: Widgets, document: Document, setting: Setting) -> None:
+    value = document.state.settings[setting.key]
+    edit = w.property(setting.key, label_of(setting), setting, value, setting.default)
+    if edit is not None:
+        document.set(setting.key, edit.value, edit.gesture)

@@ -1,0 +1,285 @@
+"""The few kinds of widgets that every page is made of: rows of a label, a value and a reset.
+
+Each widget's rectangle can be recorded by page and label, so that tests find it as an artist
+does: by what it says.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any, NamedTuple
+
+import numpy as np
+from imgui_bundle import imgui
+
+from elemental.picture import decode_srgb, encode_srgb
+from elemental.settings import Setting
+from elemental.ui import icons, theme
+from elemental.ui.theme import Fonts, Rgb
+
+LABEL_SHARE = 0.44
+"""Of a row's width, for its label."""
+LOGARITHMIC_SPAN = 100.0
+"""A range that is wider than this is slid over by factors, not by differences."""
+
+Rect = tuple[float, float, float, float]
+"""(left, top, right, bottom) in pixels."""
+
+
+class Edit(NamedTuple):
+    """A new value, and the gesture that it belongs to: None where it is a step of its own."""
+
+    value: Any
+    gesture: Hashable = None
+
+
+class Widgets:
+    """ImGui's widgets in the panel's manner. ``items`` is None where nobody asks for places."""
+
+    def __init__(self, fonts: Fonts, records: bool = False) -> None:
+        self.fonts = fonts
+        self.items: dict[str, Rect] | None = {} if records else None
+        self.page = ""
+        self._typed: dict[int, str] = {}
+        self._row_end = 0.0
+
+    def begin_frame(self) -> None:
+        """Forget where things were."""
+        if self.items is not None:
+            self.items.clear()
+
+    def note(self, label: str) -> None:
+        """Record the last item under the page's name and ``label``, if it can be seen."""
+        if self.items is not None and imgui.is_item_visible():
+            low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+            self.items[f"{self.page}/{label}"] = (low.x, low.y, high.x, high.y)
+
+    # Words -------------------------------------------------------------------------------------
+
+    def text(self, text: str, rgb: Rgb | None = None) -> None:
+        """A line, as it is."""
+        if rgb is None:
+            imgui.text_unformatted(text)
+        else:
+            imgui.text_colored(theme.color(rgb), text.replace("%", "%%"))
+
+    def hint(self, text: str) -> None:
+        """A paragraph that explains, wrapped."""
+        imgui.push_style_color(imgui.Col_.text.value, theme.color(theme.MUTED))
+        imgui.push_text_wrap_pos(0.0)
+        imgui.text_unformatted(text)
+        imgui.pop_text_wrap_pos()
+        imgui.pop_style_color()
+
+    def tooltip(self, text: str) -> None:
+        """What is told when the mouse rests on the last item."""
+        if text and imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip.value):
+            imgui.begin_tooltip()
+            imgui.push_text_wrap_pos(imgui.get_font_size() * 24.0)
+            imgui.text_unformatted(text)
+            imgui.pop_text_wrap_pos()
+            imgui.end_tooltip()
+
+    @contextmanager
+    def figures(self) -> Iterator[None]:
+        """Text in figures of one width."""
+        imgui.push_font(self.fonts.figures, 0.0)
+        try:
+            yield
+        finally:
+            imgui.pop_font()
+
+    # Plain items -------------------------------------------------------------------------------
+
+    def button(self, label: str, name: str = "", enabled: bool = True, help: str = "") -> bool:
+        """A button; ``name`` is what it is recorded as where the label is an icon."""
+        imgui.begin_disabled(not enabled)
+        pressed = imgui.button(f"{label}###{name or label}")
+        self.note(name or label)
+        imgui.end_disabled()
+        self.tooltip(help)
+        return pressed
+
+    def tick(self, label: str, value: bool, name: str = "") -> bool:
+        """A box to tick, with its label behind it; returns whether it is ticked now."""
+        _, ticked = imgui.checkbox(f"{label}###{name or label}", value)
+        self.note(name or label)
+        return bool(ticked)
+
+    def choose(self, name: str, value: str, choices: Sequence[str], width: float = 0.0) -> str:
+        """A drop-down list; returns what is chosen now."""
+        imgui.set_next_item_width(width or imgui.calc_item_width())
+        chosen = value
+        is_open = imgui.begin_combo(f"##{name}", value, imgui.ComboFlags_.height_large.value)
+        self.note(name)
+        if is_open:
+            for choice in choices:
+                if imgui.selectable(choice, choice == value)[0]:
+                    chosen = choice
+                self.note(f"{name}={choice}")
+                if choice == value:
+                    imgui.set_item_default_focus()
+            imgui.end_combo()
+        return chosen
+
+    def search(self, name: str, text: str) -> str:
+        """A field to search by; returns its text."""
+        imgui.set_next_item_width(-1.0)
+        _, text = imgui.input_text_with_hint(f"##{name}", f"{icons.SEARCH}  search", text)
+        self.note(name)
+        return str(text)
+
+    def section(self, title: str, is_open: bool = True) -> bool:
+        """A heading that folds; returns whether what is under it shows."""
+        flags = imgui.TreeNodeFlags_.default_open.value if is_open else 0
+        shows = bool(imgui.collapsing_header(title, flags))
+        self.note(title)
+        return shows
+
+    # Rows of a label and a value ---------------------------------------------------------------
+
+    def row(self, label: str, help: str = "", changed: bool = False) -> None:
+        """The left part of a row; the value's widget follows, as wide as the rest."""
+        width = imgui.get_content_region_avail().x
+        left = imgui.get_cursor_pos_x()
+        corner = imgui.get_cursor_screen_pos()
+        self._row_end = left + width
+        value_x = LABEL_SHARE * width
+        gap = imgui.get_style().item_inner_spacing.x
+        edge = imgui.ImVec2(corner.x + value_x - gap, corner.y + imgui.get_frame_height())
+        imgui.push_clip_rect(corner, edge, True)
+        imgui.align_text_to_frame_padding()
+        self.text(label, theme.ACCENT if changed else None)
+        imgui.pop_clip_rect()
+        self.tooltip(help)
+        imgui.same_line(left + value_x)
+        imgui.set_next_item_width(-self._reset_width())
+
+    def reset(self, name: str, changed: bool, default: str) -> bool:
+        """The right end of a row: a button back to the default where the value is another."""
+        if not changed:
+            return False
+        imgui.same_line(self._row_end - self._reset_width())
+        imgui.push_style_color(imgui.Col_.button.value, theme.color(theme.BACKDROP, 0.0))
+        imgui.push_style_color(imgui.Col_.text.value, theme.color(theme.ACCENT))
+        pressed = imgui.button(f"{icons.RESET}###reset {name}")
+        imgui.pop_style_color(2)
+        self.note(f"reset {name}")
+        self.tooltip(f"back to {default}")
+        return pressed
+
+    def property(
+        self, name: str, label: str, setting: Setting, value: Any, default: Any
+    ) -> Edit | None:
+        """A row for one value of a kind and a range; returns the edit made in this frame."""
+        height = imgui.get_frame_height()
+        if not imgui.is_rect_visible(imgui.ImVec2(1.0, height)):
+            imgui.dummy(imgui.ImVec2(1.0, height))
+            return None
+        changed = value != default
+        imgui.push_id(name)
+        self.row(label, _help(setting), changed)
+        edit = self.value(name, setting, value)
+        if self.reset(name, changed, setting.value_text(default) or "nothing"):
+            edit = Edit(default)
+        imgui.pop_id()
+        return edit
+
+    def value(self, name: str, setting: Setting, value: Any) -> Edit | None:
+        """The widget of a value by its kind, of the next item's width."""
+        if setting.kind == "bool":
+            ticked = self.tick("", value, name)
+            return Edit(ticked) if ticked != value else None
+        if setting.kind == "choice":
+            texts = [str(choice) for choice in setting.choices]
+            chosen = self.choose(name, str(value), texts)
+            return Edit(setting.choices[texts.index(chosen)]) if chosen != str(value) else None
+        if setting.kind == "color":
+            return self.color(name, value, setting.hi)
+        if setting.kind == "text":
+            return self.typed(name, value)
+        return self.number(name, setting, value)
+
+    def number(self, name: str, setting: Setting, value: float) -> Edit | None:
+        """A slider over the setting's range; Ctrl and a click, or a double click, to type."""
+        lo, hi = setting.lo or 0.0, setting.hi if setting.hi is not None else 1e6
+        wide = hi - lo > LOGARITHMIC_SPAN
+        flags = imgui.SliderFlags_.always_clamp.value
+        flags |= imgui.SliderFlags_.logarithmic.value if wide else 0
+        unit = f" {setting.unit}".rstrip().replace("%", "%%")
+        changed: bool
+        number: float
+        if setting.kind == "int":
+            places = f"%d{unit}"
+            changed, number = imgui.slider_int(
+                f"##{name}", int(value), int(lo), int(hi), places, flags
+            )
+        else:
+            places = ("%.3g" if wide else f"%.{3 if hi - lo <= 2.0 else 2}f") + unit
+            changed, number = imgui.slider_float(f"##{name}", float(value), lo, hi, places, flags)
+        self.note(name)
+        return Edit(_short(number, setting.kind), imgui.get_item_id()) if changed else None
+
+    def color(self, name: str, value: Sequence[float], hi: float | None = 1.0) -> Edit | None:
+        """Three linear components to drag or type, and a swatch that opens a picker."""
+        edit = None
+        side = imgui.get_frame_height()
+        spacing = imgui.get_style().item_inner_spacing.x
+        imgui.set_next_item_width(imgui.calc_item_width() - side - spacing)
+        clamp = imgui.SliderFlags_.always_clamp.value
+        top = hi if hi is not None else 1e6
+        changed, dragged = imgui.drag_float3(
+            f"##{name}", list(value), 0.005, 0.0, top, "%.3g", clamp
+        )
+        self.note(name)
+        if changed:
+            edit = Edit(tuple(_short(c) for c in dragged), imgui.get_item_id())
+        imgui.same_line(0.0, spacing)
+        shown = encode_srgb(np.asarray(value, np.float32))
+        red, green, blue = (min(float(c), 1.0) for c in shown)
+        swatch = imgui.ImVec4(red, green, blue, 1.0)
+        size = imgui.ImVec2(side, side)
+        if imgui.color_button(f"swatch {name}", swatch, imgui.ColorEditFlags_.no_tooltip, size):
+            imgui.open_popup("picker")
+        self.note(f"swatch {name}")
+        if imgui.begin_popup("picker"):
+            flags = imgui.ColorEditFlags_.no_side_preview | imgui.ColorEditFlags_.hdr
+            picked, codes = imgui.color_picker3(
+                f"##picker {name}", [float(c) for c in shown], flags
+            )
+            self.note(f"picker {name}")
+            if picked:
+                linear = decode_srgb(np.clip(np.asarray(codes, np.float32), 0.0, None))
+                clipped = np.minimum(linear, top)
+                edit = Edit(tuple(_short(c) for c in clipped), imgui.get_item_id())
+            imgui.end_popup()
+        return edit
+
+    def typed(self, name: str, value: str, hint: str = "") -> Edit | None:
+        """A line of text, an edit once it is left or Enter is pressed."""
+        key = imgui.get_id(name)
+        _, text = imgui.input_text_with_hint(f"##{name}", hint, self._typed.get(key, value))
+        self.note(name)
+        if imgui.is_item_active():
+            self._typed[key] = str(text)
+        elif imgui.is_item_deactivated_after_edit():
+            self._typed.pop(key, None)
+            return Edit(str(text)) if text != value else None
+        else:
+            self._typed.pop(key, None)
+        return None
+
+    def _reset_width(self) -> float:
+        style = imgui.get_style()
+        return imgui.get_font_size() + 2.0 * style.frame_padding.x + style.item_inner_spacing.x
+
+
+def _short(number: float, kind: str = "float") -> Any:
+    """ImGui's 32-bit number as one would type it: 0.35, not 0.3499999940395355."""
+    return int(number) if kind == "int" else float(f"{number:.6g}")
+
+
+def _help(setting: Setting) -> str:
+    lines = [setting.help, f"{setting.range_text()}; default {setting.value_text(setting.default)}"]
+    return "\n".join([*lines, " ".join(part for part in (setting.key, setting.source) if part)])
