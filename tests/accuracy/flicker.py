@@ -28,8 +28,8 @@ class Flicker:
 
     `far`: part of the picture that the moving thing neither covers nor lights, and that is no
     darker than DARK. `deviation`: root of the mean square of the changes there; `most`: the largest
-    of 99.9 % of them. `jitter`: root of the mean square of what turns back with the next frame, half
-    the second difference: next to nothing of a light that comes near or goes, all of one that
+    of 99.9 % of them. `jitter`: root of the mean square of what turns back with the next frame,
+    half the second difference: next to nothing of a light that comes near or goes, all of one that
     flickers; `lit_jitter`: the same of what is lit, not covered.
     """
 
