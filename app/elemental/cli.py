@@ -25,7 +25,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
     words = list(sys.argv[1:] if arguments is None else arguments)
-    commands = {"shot": _shot, "run": _run, "bench": _bench, "list": _list}
+    commands = {"shot": _shot, "run": _run, "bench": _bench, "render": _render, "list": _list}
     try:
         options = parse(words, commands)
         options.command(options)
@@ -82,6 +82,12 @@ def _bench(options: argparse.Namespace) -> None:
     from elemental.bench import Bench, bench  # noqa: PLC0415
 
     bench(_filled(Bench, options))
+
+
+def _render(options: argparse.Namespace) -> None:
+    from elemental.render import Render, render  # noqa: PLC0415
+
+    render(_filled(Render, options))
 
 
 def _list(options: argparse.Namespace) -> None:

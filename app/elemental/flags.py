@@ -14,6 +14,8 @@ from elemental.core.errors import InputError
 
 DEFAULT_SIZE = (1280, 720)
 """(width, height) of a picture, pixels."""
+MAX_FRAME = 10**6
+"""Last frame of a sequence, nine hours at 30 a second."""
 MAX_SIDE_PX = 16384
 """Largest image side; the texture limit of common drivers."""
 
@@ -101,16 +103,40 @@ def _add_shot_flags(parser: _Parser) -> None:
     flag("--fps", "F", _number(1e-3, 1e4), 30.0, "frames a second of scene time (default: 30)")
     flag("--time", "S", _number(0, 1e6), 0.0, "scene time of frame 0 in seconds (default: 0)")
     flag("--seed", "K", _whole(0, 2**31 - 1), 0, "seed of random choices, none so far (default: 0)")
-    flag("--camera", "NAME", str, None, "a camera of the scene (default: its path, else its first)")
-    flag("--eye", "X,Y,Z", _vector, None, "camera position in metres (default: the camera's)")
-    flag("--target", "X,Y,Z", _vector, None, "point looked at in metres (default: the camera's)")
-    flag("--fov", "DEG", _number(1, 179), None, "vertical angle, degrees (default: the camera's)")
-    flag("--view", "NAME", str, "final", "a buffer of `elemental list views` (default: final)")
+    _add_viewpoint_flags(parser)
     parser.add_argument(
         "--ui", action="store_true", help="draw the panel around the picture (default: off)"
     )
     flag("--ui-page", "NAME", str, None, "the same with a page in front (default: Settings)")
     flag("--report", "R.json", Path, None, "also write times in ms and bytes (default: none)")
+
+
+def _add_viewpoint_flags(parser: _Parser) -> None:
+    flag = parser.flag
+    flag("--camera", "NAME", str, None, "a camera of the scene (default: its path, else its first)")
+    flag("--eye", "X,Y,Z", _vector, None, "camera position in metres (default: the camera's)")
+    flag("--target", "X,Y,Z", _vector, None, "point looked at in metres (default: the camera's)")
+    flag("--fov", "DEG", _number(1, 179), None, "vertical angle, degrees (default: the camera's)")
+    flag("--view", "NAME", str, "final", "a buffer of `elemental list views` (default: final)")
+
+
+def _add_render_flags(parser: _Parser) -> None:
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        required=True,
+        metavar="DIR|NAME%%05d.png|FILE.mp4",
+        help="folder, numbered pictures (.png, .exr) or video to make (required, no default)",
+    )
+    _add_common_flags(parser)
+    flag = parser.flag
+    flag("--frames", "A:B", _span, None, "frames A to B-1 (default: the camera path's)")
+    flag("--fps", "F", _number(1e-3, 1e4), 30.0, "frames a second of scene time (default: 30)")
+    _add_viewpoint_flags(parser)
+    parser.add_argument(
+        "--overwrite", action="store_true", help="make every frame anew (default: keep whole ones)"
+    )
 
 
 def _add_run_flags(parser: _Parser) -> None:
@@ -173,6 +199,7 @@ def _add_list_words(parser: _Parser) -> None:
 
 _COMMANDS: dict[str, tuple[str, Callable[[_Parser], None]]] = {
     "shot": ("render a picture or a numbered sequence, headless", _add_shot_flags),
+    "render": ("render a frame sequence or a video, resumable", _add_render_flags),
     "run": ("open a window with a fly camera and pass times", _add_run_flags),
     "bench": ("time each pass of the frame, headless", _add_bench_flags),
     "list": ("list what can be named on the command line", _add_list_words),
@@ -216,6 +243,14 @@ def _whole(lo: int, hi: int) -> Callable[[str], int]:
         return value
 
     return parse_whole
+
+
+def _span(text: str) -> tuple[int, int]:
+    match = re.fullmatch(r"(\d{1,7}):(\d{1,7})", text, re.ASCII)
+    first, end = (int(match[1]), int(match[2])) if match else (0, 0)
+    if not first < end <= MAX_FRAME:
+        raise argparse.ArgumentTypeError(f"{text!r} is not A:B with A < B, up to {MAX_FRAME}")
+    return first, end
 
 
 _PORT = _whole(0, 65535)

@@ -348,6 +348,14 @@ class Renderer:
             )
         return self._voxels
 
+    def history(self) -> bytes:
+        """What later frames of a still scene depend on; waits for the GPU."""
+        return self._post.save()
+
+    def restore_history(self, raw: bytes) -> None:
+        """Go on as after the frame at whose end ``raw`` was had. Raises ValueError."""
+        self._post.restore(raw)
+
     def read(self, frame: Frame) -> npt.NDArray[Any]:
         """(H, W, 4) float32 of a linear frame, uint8 display codes of another; row 0 on top."""
         pixels = np.flipud(frame.image.read())

@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from elemental.core.images import write_exr, write_png
+from elemental.core.errors import InputError
+from elemental.core.images import check_png, read_exr, write_exr, write_png
 
 SUFFIXES = (".png", ".exr")
 
@@ -30,6 +31,17 @@ def save_picture(path: Path, pixels: npt.NDArray[Any], is_linear: bool) -> None:
         write_exr(path, np.ascontiguousarray(values, np.float32))
     else:
         write_png(path, _bytes(encode_srgb(_unit(rgb))) if is_linear else _bytes(_unit(rgb)))
+
+
+def is_picture(path: Path, size: tuple[int, int]) -> bool:
+    """Whether a file is a whole PNG or EXR of ``size`` = (width, height) pixels."""
+    try:
+        if path.suffix.lower() == ".exr":
+            height, width = read_exr(path).shape[:2]
+            return (width, height) == size
+        return check_png(path) == size
+    except InputError:
+        return False
 
 
 def encode_srgb(linear: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:

@@ -53,9 +53,9 @@ def test_the_version_is_told() -> None:
     assert lines("--version") == ["elemental 0.1.0"]
 
 
-@pytest.mark.parametrize("command", ["shot", "run", "bench", "list"])
+@pytest.mark.parametrize("command", ["shot", "render", "run", "bench", "list"])
 def test_every_flag_has_one_line_of_help_with_its_default(command: str) -> None:
-    parser = build_parser(dict.fromkeys(("shot", "run", "bench", "list"), lambda _: None))
+    parser = build_parser(dict.fromkeys(("shot", "render", "run", "bench", "list"), lambda _: None))
     subparser = next(a for a in parser._actions if a.choices and command in a.choices)
     assert isinstance(subparser.choices, dict)
     for action in subparser.choices[command]._actions:

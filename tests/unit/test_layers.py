@@ -18,8 +18,9 @@ LAYERS = (
     {"passes"},
     {"frame"},
     {"session", "report", "picture", "remote"},
+    {"sequence"},
     {"ui"},
-    {"shot", "bench", "listing", "graph_listing", "flags"},
+    {"shot", "bench", "listing", "render", "graph_listing", "flags"},
     {"cli"},
     {"__main__"},
 )
@@ -36,6 +37,7 @@ OWNERS = {
     "pydantic": {"scene"},
     "tomlkit": {"scene"},
     "pythonosc": {"remote"},
+    "imageio_ffmpeg": {"sequence"},
     "PIL": {"core"},
     "OpenEXR": {"core"},
     "DracoPy": {"scene"},

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from elemental.core.errors import InputError
 from elemental.core.images import read_exr
-from elemental.picture import decode_srgb, encode_srgb, save_picture
+from elemental.picture import decode_srgb, encode_srgb, is_picture, save_picture
 
 RADIANCE = np.array([[[0.0, 0.18, 1.0, 0.5], [2.5, 1e-4, 65504.0, 0.0]]], np.float32)
 
@@ -56,3 +56,20 @@ def test_a_picture_that_cannot_be_written_leaves_nothing(tmp_path: Path) -> None
         with pytest.raises(InputError, match="can't be written"):
             save_picture(tmp_path / "nowhere" / name, RADIANCE, is_linear=True)
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", ["a.png", "a.exr"])
+def test_only_whole_pictures_of_the_size_count(tmp_path: Path, name: str) -> None:
+    file = tmp_path / name
+    assert not is_picture(file, (24, 16))
+    noise = np.random.default_rng(1).random((16, 24, 3), np.float32)
+    save_picture(file, noise, is_linear=True)
+    assert is_picture(file, (24, 16))
+    assert not is_picture(file, (16, 24))
+    whole = file.read_bytes()
+    for length in (0, 8, 100, len(whole) // 2, len(whole) - 20, len(whole) - 4):
+        file.write_bytes(whole[:length])
+        assert not is_picture(file, (24, 16)), length
+    middle = len(whole) // 2
+    file.write_bytes(whole[:middle] + bytes([whole[middle] ^ 1]) + whole[middle + 1 :])
+    assert name == "a.exr" or not is_picture(file, (24, 16))  # an EXR has no checksums

@@ -19,6 +19,8 @@ from elemental.core.rgbe import decode_rgbe
 
 ERROR_DESCRIPTOR = 2
 PNG_JPEG_WEBP = ("PNG", "JPEG", "WEBP")
+PNG_END = b"\0\0\0\0IEND\xaeB`\x82"
+"""The last chunk [ISO 15948 11.2.5]."""
 
 
 def read_png_jpeg_webp(source: bytes | Path, name: str | None = None) -> npt.NDArray[np.uint8]:
@@ -34,6 +36,20 @@ def read_png_jpeg_webp(source: bytes | Path, name: str | None = None) -> npt.NDA
             return _rgba8(image)
     except Exception as error:  # Pillow's decoders raise what their input makes them raise
         raise InputError(label, "", f"not a readable PNG, JPEG or WebP image ({error})") from error
+
+
+def check_png(path: Path) -> tuple[int, int]:
+    """(width, height) of a PNG whose every chunk is whole. Raises InputError for another file."""
+    encoded = read_file(path)
+    if not encoded.endswith(PNG_END):
+        raise InputError(path, "", "not a whole PNG image")
+    try:
+        with PIL.Image.open(io.BytesIO(encoded), formats=("PNG",)) as image:
+            size = image.size
+            image.verify()
+    except Exception as error:  # Pillow's decoders raise what their input makes them raise
+        raise InputError(path, "", f"not a whole PNG image ({error})") from error
+    return size
 
 
 def read_environment(path: Path) -> npt.NDArray[np.float32]:

@@ -79,6 +79,17 @@ class EyeAdaptation:
         )
         return exposed
 
+    def save(self) -> bytes:
+        """The state, for ``restore``; waits for the GPU."""
+        return bytes([self._adapts]) + self.state.read().tobytes()
+
+    def restore(self, raw: bytes) -> None:
+        """Go on from a saved state. Raises ValueError for bytes that are none."""
+        if len(raw) != 1 + self._eye.itemsize:
+            raise ValueError("not a state of the eye")
+        self._adapts, self._fixed = bool(raw[0]), None
+        self.state.write(raw[1:])
+
     def release(self) -> None:
         """Free the state."""
         self.state.release()

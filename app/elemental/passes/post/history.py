@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from elemental.core.layout import Block
+import numpy as np
+
+from elemental.core.layout import Block, layouts
 from elemental.gpu.device import Device
 from elemental.passes.post.exposure import EyeAdaptation
 from elemental.passes.post.textures import PostTextures
@@ -40,6 +42,21 @@ class PostHistory:
             elapsed_s = float(view["time_s"]) - float(before["time_s"])
             if 0.0 <= elapsed_s <= LONGEST_STEP_S:
                 self.view_before, self.elapsed_s = before, elapsed_s
+
+    def save(self) -> bytes:
+        """What later frames depend on; waits for the GPU."""
+        if self._last_view is None:  # no effect has run
+            return b""
+        return self.eye.save() + self._last_view.tobytes()
+
+    def restore(self, raw: bytes) -> None:
+        """Go on as after the frame at whose end ``raw`` was saved. Raises ValueError."""
+        if not raw:
+            return
+        view = layouts().block("View")
+        at = len(raw) - view.itemsize
+        self.eye.restore(raw[: max(at, 0)])
+        self._last_view = np.frombuffer(raw, view, offset=at)[0]
 
     def release(self) -> None:
         """Free everything on the device."""
