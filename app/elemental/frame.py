@@ -23,6 +23,7 @@ from elemental.passes.cone_trace.diffuse import combine_diffuse, trace_diffuse
 from elemental.passes.cone_trace.interleave import SUB_IMAGES
 from elemental.passes.cone_trace.specular import SpecularCounters, trace_specular
 from elemental.passes.cone_trace.steps import STEP_VIEWS, step_view
+from elemental.passes.decal import Decals
 from elemental.passes.forward import draw_translucent
 from elemental.passes.gbuffer import GBuffer, draw_gbuffer
 from elemental.passes.light_cells import cull_to_view
@@ -113,6 +114,7 @@ class Renderer:
         self._last_pose = LastPose()
         self._post = PostHistory(device, settings)
         self._meshes = GpuScene(device, scene, self._area_lights)
+        self._decals = Decals(device, scene, self._meshes)
         self._shadows = ShadowMaps(device, _shadow_settings(settings))
         self._sky = Sky(device)
         self._voxels: VoxelLighting | None = None
@@ -264,6 +266,7 @@ class Renderer:
             return voxel_view(g, view, octree, self.size, view_name, level, side)
 
         gb = draw_gbuffer(g, view, self._meshes, self.size)
+        self._decals.draw(g, view, gb)
         if view_name in CHANNELS:
             return surface_view(g, view, gb, view_name)
         voxel_m = octree.grid.voxel_m if octree is not None else None
@@ -365,6 +368,7 @@ class Renderer:
         """Free everything on the device."""
         self._drop_voxels()
         self._post.release()
+        self._decals.release()
         self._sky.release()
         self._shadows.release()
         self._meshes.release()

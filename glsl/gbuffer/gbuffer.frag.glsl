@@ -30,7 +30,7 @@ void main() {
     surface.specular_color = s.specular_color;
     surface.ambient_occlusion = s.ambient_occlusion;
     surface.albedo = s.albedo;
-    surface.decal_mask = 1.0;
+    surface.decal_mask = clamp(s.decal_mask, 0.0, 1.0);
     surface.specular_power = s.specular_power;
     surface.subsurface_color = s.subsurface_color;
     GBufferTexels texels = gbuffer_pack(surface);

@@ -30,6 +30,14 @@ uniform sampler2D u_emissive_texture;            // sRGB
 layout(std430) buffer MaterialFaults { uint material_faults[]; };  // by material: 1 where one was
 #endif
 
+// How texture coordinates change from pixel to pixel; a pass that knows better defines its own.
+#ifndef MATERIAL_UV_DX
+#define MATERIAL_UV_DX(uv) dFdx(uv)
+#define MATERIAL_UV_DY(uv) dFdy(uv)
+#else
+#define MATERIAL_UV_GIVEN 1
+#endif
+
 // The texel of a slot at a surface point. Gradients come from the interpolated coordinates alone:
 // outside the triangle, where the quad's helpers are, llvmpipe reads 0 from buffers, and a
 // coordinate transformed there would choose far too coarse a level.
@@ -39,10 +47,12 @@ vec4 material_texel(sampler2D image, uint material, uint slot, vec2 uv0, vec2 uv
     vec3 row_u = materials[material].uv_row_u[slot].xyz;
     vec3 row_v = materials[material].uv_row_v[slot].xyz;
     mat2 uv_from_uv = transpose(mat2(row_u.xy, row_v.xy));
-    vec2 dx = second ? dFdx(uv1) : dFdx(uv0);
-    vec2 dy = second ? dFdy(uv1) : dFdy(uv0);
+    vec2 dx = second ? MATERIAL_UV_DX(uv1) : MATERIAL_UV_DX(uv0);
+    vec2 dy = second ? MATERIAL_UV_DY(uv1) : MATERIAL_UV_DY(uv0);
     vec2 uv = uv_from_uv * (second ? uv1 : uv0) + vec2(row_u.z, row_v.z);
     return textureGrad(image, uv, uv_from_uv * dx, uv_from_uv * dy);
+#elif defined(MATERIAL_UV_GIVEN)
+    return textureGrad(image, uv0, MATERIAL_UV_DX(uv0), MATERIAL_UV_DY(uv0));
 #else
     return texture(image, uv0);
 #endif

@@ -24,6 +24,7 @@ struct Surface {
     vec3 normal_ts;         // unit, tangent space: what a normal map says
     vec3 height_gradient;   // world space: how a height over the surface changes, m a m
     vec3 subsurface_color;  // share of the light that leaves elsewhere: back-lit, around the edge
+    float decal_mask;       // share of a decal that the surface takes on
     uint lighting_model;    // LIGHTING_*
 };
 
@@ -43,6 +44,7 @@ Surface plain_surface() {
     s.normal_ts = vec3(0.0, 0.0, 1.0);
     s.height_gradient = vec3(0.0);
     s.subsurface_color = vec3(0.0);
+    s.decal_mask = 1.0;
     s.lighting_model = LIGHTING_DEFAULT;
     return s;
 }

@@ -197,8 +197,8 @@ class Graph:
             node.color.append((*attachment, clear))
         if depth is not None:
             writes_depth = state.depth_write and state.depth_test != "none"
-            writes_depth |= state.stencil is not None or clear_stencil is not None
-            writes_depth |= clear_depth is not None
+            writes_depth |= clear_stencil is not None or clear_depth is not None
+            writes_depth |= state.stencil is not None and state.stencil.writes
             cleared = clear_depth is not None and tile is None
             node.depth = self._attach(node, depth, cleared=cleared, written=writes_depth)
             node.clear_depth, node.clear_stencil = clear_depth, clear_stencil

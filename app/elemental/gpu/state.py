@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from elemental.gpu import gl as c
 
@@ -23,6 +24,9 @@ _BLENDS = {
 }
 
 
+ColorMask: TypeAlias = tuple[bool, bool, bool, bool]
+
+
 @dataclass(frozen=True, slots=True)
 class Stencil:
     """Stencil test, the same for both faces."""
@@ -34,6 +38,12 @@ class Stencil:
     fail: str = "keep"
     depth_fail: str = "keep"
     on_pass: str = "keep"
+
+    @property
+    def writes(self) -> bool:
+        """Whether it may change the stencil buffer."""
+        kept = self.fail == self.depth_fail == self.on_pass == "keep"
+        return self.write_mask != 0 and not kept
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +59,8 @@ class RasterState:
     blend: str | tuple[str | None, ...] | None = None
     """None, add, alpha or premultiplied; a tuple holds one for each colour target."""
     stencil: Stencil | None = None
-    color_mask: tuple[bool, bool, bool, bool] = (True, True, True, True)
+    color_mask: ColorMask | tuple[ColorMask, ...] = (True, True, True, True)
+    """Channels written; a tuple of masks holds one for each colour target."""
     polygon_offset: tuple[float, float] | None = None
     """(slope factor, constant units)."""
 
@@ -92,7 +103,11 @@ def apply(gl: c.GL, state: RasterState) -> None:
             _STENCIL_OPS[stencil.on_pass],
         )
         gl.glStencilMask(stencil.write_mask)
-    gl.glColorMask(*state.color_mask)
+    if isinstance(state.color_mask[0], tuple):
+        for target, mask in enumerate(state.color_mask):
+            gl.glColorMaski(target, *mask)
+    else:
+        gl.glColorMask(*state.color_mask)
     _switch(gl, c.POLYGON_OFFSET_FILL, state.polygon_offset is not None)
     if state.polygon_offset is not None:
         gl.glPolygonOffset(*state.polygon_offset)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from elemental.gpu.formats import D24S8, RGB10_A2, RGBA8, RGBA16F
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import Ref, TextureHandle
 from elemental.gpu.shaders import Raster
-from elemental.gpu.state import RasterState
+from elemental.gpu.state import RasterState, Stencil
 from elemental.passes.material_table import material_shader
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.scene_pack import SOLID, Batch
@@ -23,6 +23,14 @@ STATE = RasterState(cull="back", depth_test="lequal")
 VIEWER = "camera"
 """Whom GpuScene.look culls for here."""
 CLEAR = (0.0, 0.0, 0.0, 0.0)
+REFUSES_DECALS = 1
+"""Bit of the stencil buffer, set where the nearest surface is of an instance without decals."""
+MASKED_STATES = {
+    receives: replace(STATE, stencil=Stencil(reference=0 if receives else REFUSES_DECALS,
+                                             on_pass="replace"))
+    for receives in (True, False)
+}  # fmt: skip
+"""By whether decals may draw, where any instance refuses them."""
 
 
 MASKED = {"ALPHA_MASK": 1}
@@ -68,11 +76,13 @@ def draw_gbuffer(g: Graph, view: Block, scene: GpuScene, size: tuple[int, int]) 
         d=g.texture("gbuffer.d", size=size, format=RGBA8),
     )
     scene.look(VIEWER, np.asarray(view["clip_from_world"]).T)
-    groups: dict[Raster, list[Batch]] = defaultdict(list)
+    groups: dict[tuple[Raster, bool], list[Batch]] = defaultdict(list)
     for batch in scene.batches(SOLID):
         defines = MASKED if batch.alpha_mode == "mask" else None
-        groups[material_shader(VERT, FRAG, batch, defines)].append(batch)
-    for number, (shader, batches) in enumerate((groups or {EMPTY: []}).items()):
+        groups[material_shader(VERT, FRAG, batch, defines), batch.receives_decals].append(batch)
+    masked = any(not receives for _, receives in groups)
+    for number, (key, batches) in enumerate((groups or {(EMPTY, True): []}).items()):
+        shader, receives = key
         mask = batches[0].texture_mask if batches else 0
 
         def draw(enc: Encoder, batches: list[Batch] = batches, mask: int = mask) -> None:
@@ -86,9 +96,10 @@ def draw_gbuffer(g: Graph, view: Block, scene: GpuScene, size: tuple[int, int]) 
             reads=scene.reads(),
             writes=scene.materials.writes(batches),
             params={"View": view, **scene.params()},
-            state=STATE,
+            state=MASKED_STATES[receives] if masked else STATE,
             clear_color=CLEAR if number == 0 else None,
             clear_depth=1.0 if number == 0 else None,
+            clear_stencil=0 if number == 0 else None,
             draw=draw,
         )
     return gb

@@ -252,7 +252,7 @@ class GpuScene:
         materials; without it the pass's state stays. `seen_by`: a viewer given to `look`.
         """
         placed = self._placed(seen_by)
-        for batch in self._bind_textures(encoder, batches, texture_mask):
+        for batch in self.textured(encoder, batches, texture_mask):
             if cull:
                 encoder.set(cull="none" if batch.double_sided else "back")
             encoder.draw_indirect(placed.vertices, placed.commands, batch.count, batch.first)
@@ -265,13 +265,17 @@ class GpuScene:
         The instance comes as the attributes INSTANCE_NAMES. The pass names the lists' commands and
         indices in ``uses``.
         """
-        for batch in self._bind_textures(encoder, batches, texture_mask):
+        for batch in self.textured(encoder, batches, texture_mask):
             instances = self._culling.instances_of(batch)
             first = self.lists.first_command(view) + instances.start
             encoder.draw_indirect(self._listed, self.lists.commands, len(instances), first)
 
-    def _bind_textures(
-        self, encoder: Encoder, batches: Iterable[Batch], texture_mask: int
+    def hold_textures(self, batches: Collection[Batch]) -> None:
+        """Make the textures of batches that others draw."""
+        self._textures.upload(batches)
+
+    def textured(
+        self, encoder: Encoder, batches: Iterable[Batch], texture_mask: int = ALL_SLOTS
     ) -> Iterator[Batch]:
         """Each batch, once its textures are bound."""
         bound: dict[str, int] = {}

@@ -74,6 +74,7 @@ class Batch:
     alpha_mode: AlphaMode
     dynamic: bool
     """Whether its instances are dynamic; no pose moves those of other batches."""
+    receives_decals: bool
     double_sided: bool
     textures: tuple[int, ...]
     """Texture numbers by SLOTS, -1 where a slot is empty."""
@@ -185,10 +186,10 @@ def instance_boxes(scene: Scene) -> tuple[Array, Array]:
 
 
 def _batch_key(scene: Scene, number: int, dynamic: bool) -> tuple[Any, ...]:
-    """(place in CATEGORIES, dynamic, then Batch's fields from `double_sided` to `instance`, the
+    """(place in CATEGORIES, dynamic, then Batch's fields from `receives_decals` to `instance`, the
     definition by its key)."""
     instance = scene.instances[number]
     material = scene.materials[scene.meshes[instance.mesh].material]
     category, *state = draw_state(material)
     alone = number if material.alpha_mode == "blend" else -1
-    return category, dynamic, *state, alone
+    return category, dynamic, instance.receives_decals, *state, alone

@@ -28,6 +28,7 @@ from elemental.scene.model import (
     unique_name,
 )
 from elemental.scene.motion import RigBuilder
+from elemental.scene.scene_decals import stick
 from elemental.scene.scene_file import SceneFile, flat_settings, read_scene_file
 from elemental.scene.scene_materials import dress
 from elemental.scene.scene_motions import Movers, described
@@ -65,6 +66,7 @@ def load_scene_file(path: Path, animation: str | None = None) -> Scene:
         light.node = builder.node(node, _light_turn(light)) if node >= 0 else -1
     _place_models(scene, file, wanted, builder, movers)
     dress(scene, file.materials)
+    stick(scene, file.decals)
     movers.check()
     scene.motion = builder.motion()
     scene.environment = _environment(file.environment, path) if file.environment else None
@@ -91,7 +93,10 @@ def _place_models(
             _adopt(scene, loaded[path][0])
         world_from_model = _placement(table)
         mover = movers.node_at("model", table.name or path.stem, world_from_model[:3, 3])
+        first = len(scene.instances)
         Placement(builder, world_from_model, mover).place(*loaded[path], scene)
+        for instance in scene.instances[first:]:
+            instance.receives_decals = table.receives_decals
 
 
 class Placement:

@@ -17,6 +17,7 @@ import numpy as np
 from elemental.core import transforms
 from elemental.scene.arrays import ByteArray, FloatArray, IndexArray
 from elemental.scene.cameras import Camera, CameraPath, framing_camera
+from elemental.scene.decals import Decal
 from elemental.scene.lights import Environment, Light, LightKind
 from elemental.scene.materials import AlphaMode, Material, Texture, TextureSlot, Wrap
 from elemental.scene.motion import Influences, Morphs, Motion
@@ -27,6 +28,7 @@ __all__ = [
     "ByteArray",
     "Camera",
     "CameraPath",
+    "Decal",
     "Environment",
     "FloatArray",
     "IndexArray",
@@ -84,7 +86,8 @@ class Instance:
 
     `dynamic`: a pose may place, bend or hide it; `node` of `Scene.motion`'s rig places it (-1:
     nothing does). With a `skin` of the motion its joints place its vertices in the world by
-    themselves. `weights` (T,) float32 are its morph targets' at rest.
+    themselves. `weights` (T,) float32 are its morph targets' at rest. Decals leave alone what does
+    not `receives_decals`.
     """
 
     name: str
@@ -94,6 +97,7 @@ class Instance:
     node: int = -1
     skin: int = -1
     weights: FloatArray | None = None
+    receives_decals: bool = True
 
 
 @dataclass
@@ -131,6 +135,7 @@ class Scene:
     camera_path: CameraPath | None = None
     regions: list[Region] = field(default_factory=list)
     volumes: list[Volume] = field(default_factory=list)
+    decals: list[Decal] = field(default_factory=list)
     motion: Motion | None = None
     extent: tuple[FloatArray, FloatArray] | None = None
     animations: list[str] = field(default_factory=list)

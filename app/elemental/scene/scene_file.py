@@ -15,6 +15,7 @@ from elemental.core.errors import CombinedInputError, InputError
 from elemental.core.files import read_file
 from elemental.scene.tables.base import Name, Table
 from elemental.scene.tables.cameras import CameraTable, PathTable
+from elemental.scene.tables.decals import DecalTable
 from elemental.scene.tables.lights import EnvironmentTable, LightTable
 from elemental.scene.tables.materials import MaterialTable
 from elemental.scene.tables.models import ModelTable
@@ -37,6 +38,7 @@ class SceneFile(Table):
     camera_path: PathTable | None = None
     regions: list[RegionTable] = []
     volumes: list[VolumeTable] = []
+    decals: list[DecalTable] = []
     settings: dict[str, Any] = {}
 
     @model_validator(mode="after")

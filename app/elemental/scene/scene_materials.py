@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -36,7 +36,8 @@ def dress(scene: Scene, tables: Sequence[MaterialTable]) -> None:
             definition = find_definition(table.shader, folder, scene.path, f"{field}.shader")
         for index in fitting:
             worn = _worn(scene.materials[index], table, definition)
-            scene.materials[index] = _valued(worn, table, scene, f"{field}.parameters", images)
+            place = f"{field}.parameters"
+            scene.materials[index] = valued(worn, table.parameters, scene, place, images)
 
 
 def _worn(
@@ -49,10 +50,19 @@ def _worn(
     return material
 
 
-def _valued(
-    material: Material, table: MaterialTable, scene: Scene, field: str, images: dict[Path, int]
+def valued(
+    material: Material,
+    parameters: Mapping[str, object],
+    scene: Scene,
+    field: str,
+    images: dict[Path, int],
 ) -> Material:
-    for name, value in table.parameters.items():
+    """A material with values for its parameters as a scene file has them.
+
+    `images`: those read already, by path, as numbers of the scene's textures. Raises InputError,
+    which names the file's `field`.
+    """
+    for name, value in parameters.items():
         try:
             checked = material.definition.check_value(name, value)
             parameter = material.definition.parameter(name)

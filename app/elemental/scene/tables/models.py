@@ -11,3 +11,4 @@ class ModelTable(Table):
     translation: Vec3 = [0.0, 0.0, 0.0]
     rotation_deg: Vec3 = [0.0, 0.0, 0.0]
     scale: Positive = 1.0
+    receives_decals: bool = True

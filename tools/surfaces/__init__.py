@@ -1,0 +1,1 @@
+"""Pictures of decals, and shapes of a room that shows them and glass."""
