@@ -29,6 +29,7 @@ from elemental.passes.gbuffer import GBuffer, draw_gbuffer
 from elemental.passes.light_cells import cull_to_view
 from elemental.passes.post.develop import develop
 from elemental.passes.post.history import PostHistory
+from elemental.passes.post.lens_flare import SpriteCounters
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.shade import shade
 from elemental.passes.shadow import ShadowMaps, update_shadows
@@ -83,13 +84,15 @@ class Frame:
     lights: Mapping[str, int]
     voxels: VoxelLighting | None
     specular: SpecularCounters
+    sprites: SpriteCounters
 
     @property
     def counters(self) -> dict[str, int]:
         """Shadow maps, and what the GPU has reported so far: complete after Device.finish."""
+        counted = {**self.lights, **self.sprites.counters()}
         if self.voxels is None:
-            return dict(self.lights)
-        return {**self.lights, **self.voxels.counters(), **self.specular.counters()}
+            return counted
+        return {**counted, **self.voxels.counters(), **self.specular.counters()}
 
 
 class Renderer:
@@ -222,9 +225,8 @@ class Renderer:
             self.looker(g)
         g.execute()
         assert image.physical is not None, "a kept handle has a texture once its graph has run"
-        return Frame(
-            image.physical, view in LINEAR_VIEWS, self._shadows.counts, voxels, self._specular
-        )
+        counted = (self._shadows.counts, voxels, self._specular, self._post.sprites)
+        return Frame(image.physical, view in LINEAR_VIEWS, *counted)
 
     def _declare(
         self,

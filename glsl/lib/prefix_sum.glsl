@@ -1,6 +1,6 @@
 // Prefix sum of a pair over a work group of SCAN_GROUP threads. [Hillis86 "Data Parallel Algorithms"]
 
-#include "shared/octree.glsl"
+#include "shared/scan.glsl"
 
 shared uvec2 scan_sums[SCAN_GROUP];
 

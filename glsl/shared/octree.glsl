@@ -5,6 +5,7 @@
 // lattice points on all sides of it, and wide cones see its walls whole.
 // Node n owns the 2x2x2 points 2n + {0,1}^3 and filters over 2n + {0,1,2}^3.
 // [Mittring12 "Sparse Voxel Octree"]
+#include "shared/scan.glsl"
 
 const uint NODE_BRICK_MASK = 0x00ffffffu; // low 24 bits of Node.brick: brick index + 1, 0 = empty
 const uint BRICK_LEAF = 0x80000000u;
@@ -16,7 +17,6 @@ const uint BRICK_DIRECTIONS = 6u;      // +x -x +y -y +z -z: the side of the vox
                                        // (the finest level keeps colour and normal instead)
 const uint FRAGMENT_GROUP = 128u;      // threads a group over the fragment queue
 const uint BRICK_GROUP = 64u;          // threads a group over bricks and their voxels
-const uint SCAN_GROUP = 256u;          // threads a group in the prefix sums
 const uint SCAN_BLOCKS = 2048u;        // 64-node blocks that one such group sums
 const uint REGION_SIDE = 8u;           // the scene is split into 8^3 regions, each with its leaf level
 const int REGION_LEVEL = 4;            // nodes of this level are as large as a region

@@ -25,6 +25,7 @@ SETTINGS = {
     "eye_adaptation.max_brightness": 1.0,
     "vignette.intensity": 0.0,
     "bloom.intensity": 0.0,
+    "lens_flare.intensity": 0.0,
 }
 """The light and the film alone: the lens and the eye have goldens of their own."""
 

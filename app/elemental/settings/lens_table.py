@@ -1,4 +1,4 @@
-"""The rows of what happens in the lens: bloom, dirt, depth of field."""
+"""The rows of what happens in the lens: bloom, dirt, reflections, depth of field."""
 
 from __future__ import annotations
 
@@ -17,6 +17,26 @@ def _bloom_rows(number: int, size: float, largest: float) -> tuple[Setting, Sett
     )  # fmt: skip
 
 
+# (tint, position) of the eight reflections; the positions are the field's, the tints ours.
+_FLARES = (
+    ((1.0, 0.7, 0.4), 0.60), ((1.0, 0.95, 0.6), 0.53), ((0.6, 0.8, 1.0), 0.46),
+    ((0.5, 1.0, 0.6), 0.39), ((0.4, 0.7, 1.0), 0.31), ((0.9, 0.6, 1.0), 0.27),
+    ((1.0, 0.6, 0.35), 0.22), ((0.7, 0.85, 1.0), 0.15),
+)  # fmt: skip
+
+
+def _flare_rows(
+    number: int, tint: tuple[float, float, float], position: float
+) -> tuple[Setting, Setting]:
+    return (
+        Setting(f"lens_flare.tint{number}", "color", tint, "factor on this reflection",
+                lo=0, hi=1, volume=True),
+        Setting(f"lens_flare.position{number}", "float", position,
+                "place and size of this reflection: 0.5 the centre, 0.25 the mirrored picture",
+                lo=0, hi=1, volume=True),
+    )  # fmt: skip
+
+
 LENS_TABLE = (
     Setting("bloom.intensity", "float", 1.0, "share of bright light that is spread; 0: no bloom",
             lo=0, hi=8, source="[Mittring12]", volume=True),
@@ -30,6 +50,20 @@ LENS_TABLE = (
     Setting("bloom.dirt_intensity", "float", 1.0, "factor on that dirt", lo=0, hi=8, volume=True),
     Setting("bloom.dirt_tint", "color", (0.5, 0.5, 0.5), "tint of that dirt",
             lo=0, hi=1, volume=True),
+    Setting("lens_flare.intensity", "float", 1.0,
+            "factor on reflections in the lens; 0: none", lo=0, hi=16, source="[Mittring12]",
+            volume=True),
+    Setting("lens_flare.threshold", "float", 8.0,
+            "exposed luminance above which light is reflected",
+            lo=0.1, hi=32, source="[Mittring12]", volume=True),
+    Setting("lens_flare.bokeh_size", "float", 3.0, "diameter of a bright pixel's sprite",
+            unit="% of the width", lo=0, hi=32, source="[Mittring12]", volume=True),
+    Setting("lens_flare.bokeh_shape", "text", "bokeh_hexagon.png",
+            "that sprite: an image or one of content/textures/; empty: no reflections",
+            unit="file", source="[Mittring12]", volume=True),
+    Setting("lens_flare.tint", "color", (1.0, 1.0, 1.0), "factor on all reflections",
+            lo=0, hi=1, volume=True),
+    *(row for number, flare in enumerate(_FLARES, 1) for row in _flare_rows(number, *flare)),
     # Off by default: what is in focus is a scene's or a shot's to say.
     Setting("dof.enabled", "bool", False, "depth of field", volume=True),
     Setting("dof.focal_distance", "float", 1000.0, "distance along the view that is sharp",

@@ -29,6 +29,7 @@ PLAIN: Mapping[str, Any] = {
     "eye_adaptation.max_brightness": 1.0,
     "vignette.intensity": 0.0,
     "bloom.intensity": 0.0,
+    "lens_flare.intensity": 0.0,
     "fxaa.enabled": False,
 }
 """Settings that leave exposure and film alone."""

@@ -17,6 +17,7 @@ from elemental.passes.post.dof import depth_of_field
 from elemental.passes.post.film import film_block
 from elemental.passes.post.fxaa import fxaa
 from elemental.passes.post.history import PostHistory
+from elemental.passes.post.lens_flare import is_on, lens_flares
 from elemental.passes.post.scale import downsample
 from elemental.passes.post.tonemap import tonemap
 
@@ -36,11 +37,24 @@ def develop(
     s = settings
     history.advance(view)
     scene_color = depth_of_field(g, view, scene_color, gb.depth, s)
-    blooms = s["bloom.intensity"] > 0.0
-    half = downsample(g, scene_color) if blooms or history.eye.is_on(s) else None
+    flares = is_on(s)
+    bright = flares or s["bloom.intensity"] > 0.0
+    half = downsample(g, scene_color) if bright or history.eye.is_on(s) else None
     exposed = history.eye.update(g, half, s, history.elapsed_s)
     light = bloom(g, exposed, half, s, scene_color.width) if half is not None else None
-    dirt = history.textures.image(s["bloom.dirt_mask"]) if s["bloom.dirt_intensity"] else None
+    if flares and half is not None:
+        light = lens_flares(
+            g,
+            exposed,
+            half,
+            light,
+            s,
+            shape=history.textures.mask(s["lens_flare.bokeh_shape"]),
+            quad=history.quad,
+            counted=history.sprites,
+            width=scene_color.width,
+        )
+    dirt = history.textures.mask(s["bloom.dirt_mask"]) if s["bloom.dirt_intensity"] else None
     lut = history.textures.lut(s["color_grading.lut"]) if s["color_grading.intensity"] else None
     film = film_block(s, lut.table if lut else None, int(view["frame"]))
     image = tonemap(g, exposed, film, scene_color, bloom=light, dirt=dirt, lut=lut)

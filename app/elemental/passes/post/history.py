@@ -10,6 +10,7 @@ import numpy as np
 from elemental.core.layout import Block, layouts
 from elemental.gpu.device import Device
 from elemental.passes.post.exposure import EyeAdaptation
+from elemental.passes.post.lens_flare import Quad, SpriteCounters
 from elemental.passes.post.textures import PostTextures
 
 LONGEST_STEP_S = 1.0
@@ -23,13 +24,16 @@ class PostHistory:
         """Raises InputError for a texture that ``settings`` name and that can't be loaded."""
         self.eye = EyeAdaptation(device)
         self.textures = PostTextures(device)
+        self.quad = Quad(device)
+        self.sprites = SpriteCounters()
         self.view_before: Block | None = None
         """The block View of the frame before; None for the first one and after a cut."""
         self.elapsed_s: float | None = None
         """Scene time since that frame; None where there is none."""
         self._last_view: Block | None = None
         self.textures.lut(settings["color_grading.lut"])
-        self.textures.image(settings["bloom.dirt_mask"])
+        self.textures.mask(settings["bloom.dirt_mask"])
+        self.textures.mask(settings["lens_flare.bokeh_shape"])
         for problem in self.textures.problems.values():
             raise problem
 
@@ -62,3 +66,4 @@ class PostHistory:
         """Free everything on the device."""
         self.eye.release()
         self.textures.release()
+        self.quad.release()

@@ -15,7 +15,7 @@ from elemental.core.images import read_png_jpeg_webp
 from elemental.core.paths import content_root
 from elemental.gpu.device import Device
 from elemental.gpu.formats import RGBA16F, SRGB8_A8
-from elemental.gpu.resources import Texture
+from elemental.gpu.resources import Texture, mip_count
 
 FOLDER = "textures"
 MOST_CURVE_TEXELS = 4096
@@ -34,6 +34,14 @@ class Lut:
     texture: Texture
 
 
+@dataclass(frozen=True)
+class Mask:
+    """An image on the device, linear when sampled, with mips; ``mean`` of its levels, 0..1."""
+
+    texture: Texture
+    mean: float
+
+
 class PostTextures:
     """What is loaded, by the name that a setting gives: a file of content/textures/, or a path.
 
@@ -43,25 +51,25 @@ class PostTextures:
     def __init__(self, device: Device) -> None:
         self._device = device
         self._luts: dict[str, Lut | None] = {}
-        self._images: dict[str, Texture | None] = {}
+        self._masks: dict[str, Mask | None] = {}
         self.problems: dict[str, InputError] = {}
 
     def lut(self, name: str) -> Lut | None:
         """The table of a `.cube` file; None for an empty name and for one in ``problems``."""
         return self._get(self._luts, name, self._load_lut)
 
-    def image(self, name: str) -> Texture | None:
-        """A PNG, JPEG or WebP image, linear when sampled; None as for ``lut``."""
-        return self._get(self._images, name, self._load_image)
+    def mask(self, name: str) -> Mask | None:
+        """A PNG, JPEG or WebP image; None as for ``lut``."""
+        return self._get(self._masks, name, self._load_mask)
 
     def release(self) -> None:
         """Free everything."""
         for lut in self._luts.values():
             if lut is not None:
                 lut.texture.release()
-        for image in self._images.values():
-            if image is not None:
-                image.release()
+        for mask in self._masks.values():
+            if mask is not None:
+                mask.texture.release()
 
     def _get(self, known: dict[str, T | None], name: str, load: Callable[[Path], T]) -> T | None:
         if not name:
@@ -90,7 +98,14 @@ class PostTextures:
         size = (lut.size,) * 3 if lut.is_cube else (lut.size, 1)
         return Lut(lut, self._device.texture(path.name, size, RGBA16F, data=texels))
 
-    def _load_image(self, path: Path) -> Texture:
+    def _load_mask(self, path: Path) -> Mask:
         pixels = np.ascontiguousarray(np.flipud(read_png_jpeg_webp(path)))
         height, width = pixels.shape[:2]
-        return self._device.texture(path.name, (width, height), SRGB8_A8, data=pixels)
+        levels = mip_count((width, height))
+        texture = self._device.texture(
+            path.name, (width, height), SRGB8_A8, mips=levels, data=pixels
+        )
+        texture.generate_mips()
+        codes = pixels[..., :3] / 255.0
+        linear = np.where(codes <= 0.04045, codes / 12.92, ((codes + 0.055) / 1.055) ** 2.4)
+        return Mask(texture, float(linear.mean()))

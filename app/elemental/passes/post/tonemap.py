@@ -11,10 +11,9 @@ from elemental.core.layout import Block
 from elemental.gpu.formats import RGBA8
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import AnyTexture, Ref, Sampled, TextureHandle
-from elemental.gpu.resources import Texture
 from elemental.gpu.shaders import Raster
 from elemental.passes.post.exposure import Exposed
-from elemental.passes.post.textures import Lut
+from elemental.passes.post.textures import Lut, Mask
 
 SCREEN = "post/screen.vert.glsl"
 
@@ -32,7 +31,7 @@ def tonemap(
     scene_color: AnyTexture,
     *,
     bloom: AnyTexture | None = None,
-    dirt: Texture | None = None,
+    dirt: Mask | None = None,
     lut: Lut | None = None,
 ) -> TextureHandle:
     """(H, W) RGBA8, sRGB encoded, of radiance (H, W).
@@ -46,7 +45,7 @@ def tonemap(
     if bloom is not None:
         reads["u_bloom"] = bloom
     if dirt is not None:
-        reads["u_dirt"] = dirt
+        reads["u_dirt"] = Sampled(dirt.texture, "linear")
     kind = 0
     if lut is not None:
         reads["u_lut"] = Sampled(lut.texture, "linear")
