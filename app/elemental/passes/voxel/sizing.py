@@ -7,20 +7,25 @@ from dataclasses import replace
 
 import numpy as np
 
+from elemental.core.layout import layouts
 from elemental.gpu.device import Device
 from elemental.gpu.resources import Buffer
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.voxel.build import find_nodes
 from elemental.passes.voxel.grid import Grid
+from elemental.passes.voxel.light import SIDED_BYTES_A_BRICK
 from elemental.passes.voxel.octree import Capacity, Counts, Survey
 from elemental.passes.voxel.voxelize import voxelize
 from elemental.scene.area_lights import AreaLight
 from elemental.scene.model import Scene
 
 UNBOUNDED = 0xFFFFFFFF
-FRAGMENTS_MAX = (1 << 27) // 16
-"""VoxelFragments, 16 bytes each, in the storage block that every driver allows: 2^27 bytes
-[GL 4.5, table 23.64]. Dispatches over them are folded and reach further."""
+STORAGE_BLOCK_BYTES = 1 << 27
+"""Of the largest storage block that every driver allows [GL 4.5, table 23.64]. What follows is how
+many of each one holds; dispatches are folded and reach further, atlases hold more."""
+FRAGMENTS_MAX = STORAGE_BLOCK_BYTES // int(layouts().struct("VoxelFragment").itemsize)
+LEAVES_MAX = STORAGE_BLOCK_BYTES // (8 * int(layouts().struct("VoxelAttributes").itemsize))
+INTERIOR_MAX = STORAGE_BLOCK_BYTES // SIDED_BYTES_A_BRICK
 FRAGMENT_SLACK = 1.1
 """Over the expected count of fragments, whose standard deviation is far smaller."""
 MOTION_SLACKS = (1.3, 1.1)
@@ -30,8 +35,6 @@ first, the second: leaves that are there come before room for some that may come
 GAIN_MIN = 1 / 16
 """Least share of the bricks asked for that new pools must add where they still can't hold all
 [inferred: more than what moves from frame to frame, less than one sees]."""
-BRICKS_MAX = 1 << 20
-"""Bricks that the largest atlas holds, rounded down."""
 
 
 def projected_area(scene: Scene) -> float:
@@ -127,7 +130,7 @@ def with_slack(counts: Counts, slack: float) -> Counts:
 
 
 def capacity_for(counts: Counts, budget_bytes: int, keeps_slots: bool = False) -> Capacity:
-    """Pools for these counts; where the budget or the atlas can't hold them all, fewer leaves,
+    """Pools for these counts; where the budget or the driver can't hold them all, fewer leaves,
     and where it can't hold the others either, fewer of those."""
     wanted = Capacity(
         fragments=min(max(counts.fragments + counts.fragments_dropped, 1), FRAGMENTS_MAX),
@@ -143,10 +146,11 @@ def capacity_for(counts: Counts, budget_bytes: int, keeps_slots: bool = False) -
         none = replace(capacity, **dict.fromkeys(one, 0)).nbytes(keeps_slots)
         return max(0, -(-(capacity.nbytes(keeps_slots) - budget_bytes) // (alone - none)))
 
-    cut = max(excess(wanted, bricks=1, leaves=1), wanted.bricks - BRICKS_MAX)
+    cut = max(excess(wanted, bricks=1, leaves=1), wanted.leaves - LEAVES_MAX)
     cut = max(min(cut, wanted.leaves - 1, wanted.bricks - 1), 0)
     wanted = replace(wanted, bricks=wanted.bricks - cut, leaves=wanted.leaves - cut)
-    cut = max(min(excess(wanted, bricks=1, interior=1), wanted.interior - 1, wanted.bricks - 1), 0)
+    cut = max(excess(wanted, bricks=1, interior=1), wanted.interior - INTERIOR_MAX)
+    cut = max(min(cut, wanted.interior - 1, wanted.bricks - 1), 0)
     return replace(wanted, bricks=wanted.bricks - cut, interior=wanted.interior - cut)
 
 
