@@ -2,7 +2,8 @@
 
 Each entry point is flattened by the program's own flattener and checked as it stands, once more
 with each of its on/off switches turned the other way, and with the defines of every description
-that the passes hold as a module constant. Identifiers that some drivers reserve are refused.
+that the passes hold as a module constant. Every material of content/materials is checked in each
+pass that takes materials. Identifiers that some drivers reserve are refused.
 """
 
 from __future__ import annotations
@@ -27,12 +28,18 @@ from elemental.gpu.shaders import (
     flatten,
     rewrite_messages,
 )
+from elemental.passes.material_snippets import NAME, MaterialSnippet
+from elemental.scene.definitions import builtin, definition_names
 
 Defines: TypeAlias = tuple[tuple[str, Define], ...]
 
 STAGES = {"comp": "compute", "vert": "vertex", "frag": "fragment", "geom": "geometry"}
 PACKAGES = ("passes", "ui")
 """Packages of elemental whose modules hold shader descriptions."""
+
+TAKES_MATERIAL = "void material(inout Surface s"
+"""In the text of every entry point that includes lib/material.glsl."""
+DISPLACE = "scene/displace.comp.glsl"
 
 RESERVED = frozenset(
     ["packed", "filter", "sample", "half", "input", "output", "active", "common", "patch"]
@@ -101,10 +108,21 @@ def reserved_identifiers(root: Path) -> Iterator[str]:
                     yield f"{where}:{number}: '{word}' is a reserved word on some driver"
 
 
-def validate(entry: str, defines: Defines, root: Path) -> str:
+def material_variants(root: Path) -> Iterator[tuple[str, Defines, str]]:
+    """(entry point, defines, material) of every pass that includes <material>, a material each."""
+    takers = [e for e in entry_points(root) if TAKES_MATERIAL in flatten(e, (), root).text]
+    for name in definition_names():
+        displaces = builtin(name).displacement_m > 0.0
+        for entry in takers:
+            if displaces or entry != DISPLACE:
+                yield entry, (("MATERIAL_FAULTS", 1), ("ALPHA_MASK", 1)), name
+
+
+def validate(entry: str, defines: Defines, root: Path, material: str = "") -> str:
     """The validator's complaints, with the author's files and lines; empty where it has none."""
+    snippets = {NAME: MaterialSnippet(builtin(material)).load()} if material else None
     try:
-        source = flatten(entry, defines, root)
+        source = flatten(entry, defines, root, snippets)
     except ShaderError as error:
         return str(error)
     stage = entry.split(".")[-2]
@@ -117,23 +135,25 @@ def validate(entry: str, defines: Defines, root: Path) -> str:
     )
     if done.returncode == 0:
         return ""
-    chosen = " ".join(f"{name}={value}" for name, value in defines)
+    chosen = " ".join([*(f"{name}={value}" for name, value in defines), material])
     return f"{entry} {chosen}\n{rewrite_messages(done.stdout, source)}"
 
 
 def lint(root: Path, described: list[tuple[str, Defines]]) -> tuple[int, list[str]]:
     """How many programs were checked, and what is wrong."""
     problems = list(reserved_identifiers(root))
-    jobs: dict[tuple[str, Defines], None] = dict.fromkeys(described)
+    jobs: dict[tuple[str, Defines, str], None] = {(*job, ""): None for job in described}
+    if root == glsl_root():
+        jobs |= dict.fromkeys(material_variants(root))
     for entry in entry_points(root):
-        jobs[entry, ()] = None
+        jobs[entry, (), ""] = None
         try:
             text = flatten(entry, (), root).text
         except ShaderError:
             continue  # validate() reports it
-        jobs.update(dict.fromkeys((entry, variant) for variant in switch_variants(text)))
+        jobs |= {(entry, variant, ""): None for variant in switch_variants(text)}
     with ThreadPoolExecutor() as pool:
-        problems += filter(None, pool.map(lambda job: validate(job[0], job[1], root), jobs))
+        problems += filter(None, pool.map(lambda job: validate(job[0], job[1], root, job[2]), jobs))
     return len(jobs), problems
 
 

@@ -100,18 +100,6 @@ Surface standard_surface(MaterialInput m) {
     return s;
 }
 
-#include <material>
-#ifndef HAS_MATERIAL
-struct Parameters { float none; };
-Parameters material_parameters(uint material) { return Parameters(0.0); }
-void material(inout Surface s, MaterialInput m, Parameters p) { s = standard_surface(m); }
-#endif
-
-// Infinite or not a number, by its bits: compilers may take isnan() for false.
-bool is_fault(float x) {
-    return (floatBitsToUint(x) & 0x7f800000u) == 0x7f800000u;
-}
-
 // A magenta checker of so many squares a metre.
 const float FALLBACK_SQUARES_A_M = 8.0;
 
@@ -121,6 +109,19 @@ Surface fallback_surface(vec3 position_ws) {
     Surface s = plain_surface();
     make_unlit(s, vec3(1.0, 0.0, 1.0) * mix(0.05, 1.0, odd));
     return s;
+}
+
+#include <material>
+#ifndef HAS_MATERIAL
+struct Parameters { float none; };
+Parameters material_parameters(uint material) { return Parameters(0.0); }
+void material(inout Surface s, MaterialInput m, Parameters p) { s = standard_surface(m); }
+vec3 displace(MaterialInput m, Parameters p) { return vec3(0.0); }
+#endif
+
+// Infinite or not a number, by its bits: compilers may take isnan() for false.
+bool is_fault(float x) {
+    return (floatBitsToUint(x) & 0x7f800000u) == 0x7f800000u;
 }
 
 #if MATERIAL_FAULTS

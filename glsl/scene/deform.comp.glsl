@@ -3,6 +3,7 @@
 
 #include "lib/dispatch.glsl"
 #include "shared/deform.glsl"
+#include "shared/vertex.glsl"
 
 layout(local_size_x = 64) in;  // DEFORM_GROUP
 

@@ -1,9 +1,6 @@
 // Meshes that bend: morph targets, then a skin, once a frame, into vertices of their own.
 
-const uint DEFORM_GROUP = 64u;      // vertices, threads a group
 const uint MORPH_FLOATS = 9u;       // a vertex and target: what is added to position, normal, tangent
-const uint POSITION_FLOATS = 3u;    // a vertex in the scene's positions
-const uint SURFACE_FLOATS = 12u;    // in the scene's surface: normal, tangent, then what stays
 
 // Vertices in a row of one instance.
 struct DeformGroup {

@@ -26,19 +26,19 @@ def test_bent_meshes_are_numpy_s_to_rounding(device: Device, on_device: Any) -> 
         g = device.begin_frame()
         gpu.deform(g)
         g.execute()
-        positions = gpu.positions.read(np.float32).reshape(-1, 3)
-        surface = gpu._surface.read(SURFACE_VERTEX)
+        positions = gpu.geometry.positions.read(np.float32).reshape(-1, 3)
+        surface = gpu.geometry.surface.read(SURFACE_VERTEX)
         for number in (1, 2, 3, 4):
             shape = world.meshes[world.instances[number].mesh]
             want = deformed(shape, pose.joints.get(number), pose.weights.get(number))
-            first = int(gpu._geometry.placed_vertex[number])
+            first = int(gpu.geometry.packed.placed_vertex[number])
             rows = slice(first, first + len(shape.positions))
             np.testing.assert_allclose(positions[rows], want.positions, atol=2e-6)
             np.testing.assert_allclose(surface["a_normal"][rows], want.normals, atol=5e-6)
             np.testing.assert_allclose(surface["a_tangent"][rows], want.tangents, atol=5e-6)
             np.testing.assert_array_equal(surface["a_uv0"][rows], shape.uv0)
             np.testing.assert_array_equal(surface["a_color"][rows], shape.colors)
-        at_rest = gpu._geometry.first_vertex[world.instances[1].mesh]
+        at_rest = gpu.geometry.packed.first_vertex[world.instances[1].mesh]
         shape = world.meshes[world.instances[1].mesh]
         np.testing.assert_array_equal(
             positions[at_rest : at_rest + len(shape.positions)], shape.positions

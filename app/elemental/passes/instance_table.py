@@ -63,6 +63,14 @@ class InstanceTable:
             local = shapes[scene.instances[number].mesh].around(IDENTITY)
             self._local_low[number], self._local_high[number] = local
         self._is_posed = False
+        self.margins = np.zeros(len(self.rows), np.float32)
+
+    def set_margins(self, margins: Array) -> None:
+        """Widen the boxes by (N,) m to every side, instead of by what they were widened before."""
+        wider = (margins - self.margins)[:, None]
+        self.low -= wider
+        self.high += wider
+        self.margins = margins
 
     def follow(self, pose: Pose, bent: Collection[int]) -> tuple[list[Change], range]:
         """Take over a pose; `bent`: the instances whose shape it changed.
@@ -150,6 +158,7 @@ class InstanceTable:
         low, high = self._local_low[rigid], self._local_high[rigid]
         center = np.einsum("nij,nj->ni", m[:, :3, :3], (low + high) / 2) + m[:, :3, 3]
         reach = np.einsum("nij,nj->ni", np.abs(m[:, :3, :3]), (high - low) / 2)
+        reach += self.margins[rigid, None]
         self.low[rigid], self.high[rigid] = center - reach, center + reach
         for number in numbers[self._bends[numbers]].tolist():
             shape = self._shapes[number]
@@ -160,3 +169,5 @@ class InstanceTable:
                 None if joints is None else joints[None],
                 None if weights is None else weights[None],
             )
+            self.low[number] -= self.margins[number]
+            self.high[number] += self.margins[number]

@@ -63,6 +63,7 @@ class MaterialTable:
         packed = material_pack.pack_materials(self._scene)[index]
         self.rows.write(packed.tobytes(), index * packed.nbytes)
         self._faults.write(np.zeros(1, "<u4"), index * 4)
+        self._faulty = np.where(np.arange(len(self._faulty)) == index, 0, self._faulty)
 
     def is_animated(self, index: int) -> bool:
         """Whether a material changes with time."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 
 import numpy as np
 
@@ -76,6 +76,10 @@ class Deformer:
                 self._buffers[name].write(values[low:high], low * values[0].nbytes)
         self._stale |= bent.keys()
         return list(bent)
+
+    def mark(self, instances: Collection[int]) -> None:
+        """Have some instances bent anew, as the last pose has them."""
+        self._stale |= set(instances)
 
     def run(self, g: Graph) -> None:
         """Add the pass that the last poses ask for: none where nothing bends otherwise."""

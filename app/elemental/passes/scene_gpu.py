@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,14 +20,14 @@ from elemental.passes.material_pack import ALL_SLOTS, CATEGORIES, SLOTS
 from elemental.passes.material_table import MaterialTable
 from elemental.passes.material_textures import MaterialTextures
 from elemental.passes.placed import Placed
-from elemental.passes.scene_deform import Deformer
+from elemental.passes.scene_displace import displacements
+from elemental.passes.scene_geometry import SceneGeometry
 from elemental.passes.scene_pack import BLEND, OPAQUE, Array, Batch
 from elemental.passes.triangle_lists import TriangleLists
 from elemental.scene.area_lights import AreaLight
 from elemental.scene.evaluate import Pose
 from elemental.scene.model import AlphaMode, Material, Scene
 
-SURFACE_NAMES = scene_pack.SURFACE_VERTEX.names or ()
 INSTANCE_FORMAT = "16f 16f 4u 64x/i"
 RESTLESS_REPAINTS = 2
 """Changes of material after which an instance counts as dynamic."""
@@ -57,22 +58,11 @@ class GpuScene:
         self._table = InstanceTable(scene, area_lights)
         self._material_changes: dict[int, Change] = {}
         self._repaints = np.zeros(len(scene.instances), np.int64)
-        self._geometry = geometry = scene_pack.pack_geometry(scene, scene_pack.bending(scene))
         self.instances = self._upload("instances", self._table.rows, dynamic=True)
         self.materials = MaterialTable(device, scene)
         self.dynamic |= self._table.users(scene, self.materials.is_animated)
-        self.indices = self._upload("indices", geometry.indices)
-        self.positions = self._upload("positions", geometry.positions)
-        self._surface = self._upload("surface", geometry.surface)
-        self._buffers = [
-            self.instances,
-            self.indices,
-            self.positions,
-            self._surface,
-        ]
-        self._deformer: Deformer | None = None
-        if scene_pack.bending(scene):
-            self._deformer = Deformer(device, scene, geometry, self.positions, self._surface)
+        self.geometry = SceneGeometry(device, scene)
+        self._spread()
         self._textures = MaterialTextures(device, scene)
         self._pose: Pose | None = None
         self._rests = False
@@ -81,10 +71,17 @@ class GpuScene:
     def _upload(self, name: str, values: Array, dynamic: bool = False) -> Buffer:
         return self._device.buffer(f"scene.{name}", values, category="meshes", dynamic=dynamic)
 
+    def _spread(self) -> None:
+        """Give boxes and bounds the room that materials may displace things into."""
+        margins = displacements(self._scene)
+        self._table.set_margins(margins)
+        low, high = self._scene.bounds()
+        self.bounds = (low - margins.max(), high + margins.max())
+
     def _arrange(self) -> None:
         """Sort the instances into batches, with all that hangs on their order."""
         commands, numbers, self._batches = scene_pack.pack_draws(
-            self._scene, self._geometry, self.dynamic
+            self._scene, self.geometry.packed, self.dynamic
         )
         self._textures.upload(self._batches)
         table = self._table
@@ -92,24 +89,22 @@ class GpuScene:
         self._commands, self._order = commands, numbers
         self._everything = self._place("everything")
         self._seen_by: dict[str, Placed] = {}
-        self.lists = TriangleLists(self._device, commands, numbers, self.indices, self.dynamic)
+        self.lists = TriangleLists(
+            self._device, commands, numbers, self.geometry.indices, self.dynamic
+        )
         placement = (self.instances, INSTANCE_FORMAT, INSTANCE_NAMES)
-        attributes = [*self._attributes(), placement]
+        attributes = [*self.geometry.attributes(), placement]
         self._listed = self._device.vertex_input(attributes, self.lists.indices)
-
-    def _attributes(self) -> list[tuple[Buffer, str, Sequence[str]]]:
-        surface = (self._surface, "3f 4f 2f 2f 4f1", SURFACE_NAMES)
-        return [(self.positions, "3f", ("a_position",)), surface]
 
     def _place(self, name: str) -> Placed:
         order = self._upload(f"order.{name}", self._order, dynamic=True)
-        position, surface = self._attributes()
+        position, surface = self.geometry.attributes()
         instance = (order, "1u/i", ("a_instance",))
         return Placed(
             self._upload(f"draws.{name}", self._commands, dynamic=True),
             order,
-            self._device.vertex_input([position, surface, instance], self.indices),
-            self._device.vertex_input([position, instance], self.indices),
+            self._device.vertex_input([position, surface, instance], self.geometry.indices),
+            self._device.vertex_input([position, instance], self.geometry.indices),
         )
 
     def _release_order(self) -> None:
@@ -123,10 +118,8 @@ class GpuScene:
         self._release_order()
         self._textures.release()
         self.materials.release()
-        if self._deformer is not None:
-            self._deformer.release()
-        for buffer in self._buffers:
-            buffer.release()
+        self.geometry.release()
+        self.instances.release()
 
     def update(self, pose: Pose | None, time_s: float = 0.0) -> None:
         """Begin a frame: take over its pose (None: nothing moved) and list the `changes`.
@@ -136,16 +129,17 @@ class GpuScene:
         The very pose of a frame that moved nothing is not looked at again.
         """
         passing, edited = self.materials.follow(time_s)
+        if edited:
+            self._release_order()
+            self._reshape()
+            self._repaint(edited)
+            self._arrange()
         for index in (*passing, *edited):
             self._note_material(index, self._scene.materials[index].alpha_mode != "opaque")
-        if edited:
-            self._repaint(edited)
-            self._release_order()
-            self._arrange()
         self.changes = list(self._material_changes.values())
         self._material_changes.clear()
         if pose is not None and len(pose.instances) and not (pose is self._pose and self._rests):
-            bent = self._deformer.follow(pose) if self._deformer is not None else []
+            bent = self.geometry.follow(pose)
             moved, rows = self._table.follow(pose, bent)
             self._pose, self._rests = pose, not moved
             if rows:
@@ -154,31 +148,43 @@ class GpuScene:
             if moved:
                 self._culling.moved()
                 elsewhere = {change.instance for change in moved}
+                self.geometry.mark_moved(elsewhere)
                 stood = [change for change in self.changes if change.instance not in elsewhere]
                 self.changes = [*stood, *moved]
         if self.changes:
             self.version += 1
 
     def deform(self, g: Graph) -> None:
-        """Add the pass that brings bent meshes up to the last pose, if any has to be."""
-        if self._deformer is not None:
-            self._deformer.run(g)
+        """Add the passes that bring bent and displaced meshes up to the frame, if any has to be."""
+        self.geometry.run(g, self.instances, self.materials, self._textures)
 
     def set_material(self, index: int, material: Material) -> None:
         """Replace a material, here and in the scene; its users are among the next `changes`."""
         before = self._scene.materials[index]
         self.materials.set(index, material)
         material = self._scene.materials[index]
-        self._note_material(index, material_pack.opacity(before) != material_pack.opacity(material))
         restless = self._repaint([index])
         if restless or material_pack.draw_state(before) != material_pack.draw_state(material):
             self._release_order()
+            self._reshape()
             self._arrange()
+        self._note_material(index, material_pack.opacity(before) != material_pack.opacity(material))
 
     def _note_material(self, index: int, casts: bool) -> None:
         """List the users of a material that looks otherwise now among the next `changes`."""
-        for change in self._table.material_changes(self._scene, index, casts):
-            self._material_changes[change.instance] = change
+        displaces = self._scene.materials[index].definition.displacement_m > 0.0
+        for change in self._table.material_changes(self._scene, index, casts or displaces):
+            self._material_changes[change.instance] = replace(change, moved=displaces)
+        self.geometry.mark_materials([index])
+
+    def _reshape(self) -> None:
+        """Take over how far materials displace now: boxes, and who has vertices of its own."""
+        if np.array_equal(displacements(self._scene), self._table.margins):
+            return
+        self.geometry.release()
+        self.geometry = SceneGeometry(self._device, self._scene)
+        self._spread()
+        self.version += 1  # no box of a change tells where things were: all is done anew
 
     def _repaint(self, materials: Sequence[int]) -> bool:
         """Count changes of materials. Returns whether more instances are dynamic for them."""

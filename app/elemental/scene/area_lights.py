@@ -129,7 +129,7 @@ def _join(a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> FloatArray 
 def _emits_evenly(scene: Scene, mesh: Mesh) -> bool:
     material = scene.materials[mesh.material]
     plain = material.emissive_texture is None and material.alpha_mode == "opaque"
-    return plain and material.emits and not material.unlit
+    return plain and material.emits and material.is_standard
 
 
 def _placed(

@@ -59,16 +59,11 @@ def projected_area(scene: Scene) -> float:
 
 
 def max_emission(scene: Scene, area_lights: Sequence[AreaLight] = ()) -> float:
-    """The largest radiance that voxels emit: not that of ``area_lights``.
-
-    An unlit material shows its base colour.
-    """
+    """The largest radiance that voxels emit: not that of ``area_lights``."""
     elsewhere = {light.instance for light in area_lights}
     used = {i.mesh for n, i in enumerate(scene.instances) if n not in elsewhere}
     materials = [scene.materials[scene.meshes[mesh].material] for mesh in used]
-    emitted = [float(m.emissive.max()) for m in materials]
-    unlit = [float(m.base_color[:3].max()) for m in materials if m.unlit]
-    return max([0.0, *emitted, *unlit])
+    return max([0.0, *(material.emission_max for material in materials)])
 
 
 def count(device: Device, scene: GpuScene, grid: Grid, area_m2: float) -> Counts:

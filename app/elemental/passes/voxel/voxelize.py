@@ -45,8 +45,8 @@ def select_triangles(g: Graph, scene: GpuScene, octree: Survey, dynamic: bool | 
         "voxelize.select",
         reads={
             "Chunks": lists.chunks,
-            "Indices": scene.indices,
-            "Positions": scene.positions,
+            "Indices": scene.geometry.indices,
+            "Positions": scene.geometry.positions,
             "Instances": scene.instances,
         },
         writes={"Commands": lists.commands, "Lists": lists.indices},
