@@ -72,6 +72,8 @@ class BlockLook:
 
 
 Look = SamplerLook | ImageLook | BlockLook
+MOST_LOOKS = 64
+"""Looks that a slot remembers: several times what the busiest slot of a steady frame has."""
 Bound = tuple[Look, AnyTexture | AnyBuffer]
 _Part = tuple[int, int, int]
 """(level, layer, element of the sampler array); -1: all levels, all layers."""
@@ -154,8 +156,15 @@ def looks(slot: Slot, ref: Ref, program: Program) -> Sequence[Bound]:
         return (_block(slot, ref, program),)
     bound = _elements(slot, ref, program)
     if isinstance(ref, (Texture, TextureHandle)):
-        slot.looks[ref.desc] = bound[0][0]
+        _remember(slot, ref.desc, bound[0][0])
     return bound
+
+
+def _remember(slot: Slot, key: object, look: Look) -> None:
+    """Keep a look for frames to come; a window that is being resized must not fill memory."""
+    if len(slot.looks) >= MOST_LOOKS:
+        slot.looks.clear()
+    slot.looks[key] = look
 
 
 def _elements(slot: Slot, ref: Ref, program: Program) -> list[Bound]:
@@ -206,7 +215,8 @@ def _texture(slot: Slot, ref: object, offset: int, program: Program) -> Bound:
     if look is None:
         try:
             make = _sampler_look if slot.kind == SAMPLER else _image_look
-            look = slot.looks[key] = make(slot, texture.desc, part, sampling)
+            look = make(slot, texture.desc, part, sampling)
+            _remember(slot, key, look)
         except ValueError as error:
             reason = f"{slot.name}: {texture.name} {error}"
             raise GraphError(f"{program.shader!r}: {reason}") from None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from typing import ClassVar
+from weakref import WeakValueDictionary
 
 from elemental.gpu import gl as c
 from elemental.gpu.formats import Format
@@ -14,7 +15,9 @@ _FACES = 6
 class TextureDesc:
     """What a texture is made of. Equal descriptions are one object and share pooled targets."""
 
-    __slots__ = ("cube", "format", "layers", "mips", "nbytes", "size", "slices", "target")
+    __slots__ = (
+        "__weakref__", "cube", "format", "layers", "mips", "nbytes", "size", "slices", "target",
+    )  # fmt: skip
     size: tuple[int, ...]
     """(width, height) or (width, height, depth) texels."""
     format: Format
@@ -29,7 +32,8 @@ class TextureDesc:
     nbytes: int
     """Bytes of all levels, without the driver's padding."""
 
-    _known: ClassVar[dict[tuple[object, ...], TextureDesc]] = {}
+    _known: ClassVar[WeakValueDictionary[tuple[object, ...], TextureDesc]] = WeakValueDictionary()
+    """Those in use: a window that is being resized must not fill memory."""
 
     def __new__(
         cls,
@@ -43,7 +47,7 @@ class TextureDesc:
         key = (size, format, mips, layers, cube)
         known = cls._known.get(key)
         if known is None:
-            known = cls._known[key] = super().__new__(cls)
+            known = super().__new__(cls)
             known.size, known.format, known.mips = size, format, mips
             known.layers, known.cube = layers, cube
             known.target = _target(size, layers, cube)
@@ -52,6 +56,7 @@ class TextureDesc:
             texels = sum(math.prod(extent) for extent in extents)
             flat = 1 if len(size) == 3 else known.slices
             known.nbytes = texels * flat * format.texel_bytes
+            cls._known[key] = known
         return known
 
     def __repr__(self) -> str:

@@ -11,6 +11,8 @@ from elemental.gpu.resources import Texture
 Attached = tuple[Texture, int, int]
 """(texture, level, layer or -1 for all)."""
 _Key = tuple[tuple[int, ...], ...]
+_DEPTH, _SIZE = -1, -2
+"""First numbers of a key's parts that are no colour attachments; serials are positive."""
 
 
 class Framebuffers:
@@ -28,9 +30,9 @@ class Framebuffers:
         """
         key: _Key = tuple((t.serial, level, layer) for t, level, layer in color)
         if depth is not None:
-            key = (*key, (-1, depth[0].serial, depth[1], depth[2]))
+            key = (*key, (_DEPTH, depth[0].serial, depth[1], depth[2]))
         elif not color:
-            key = ((-2, *size),)
+            key = ((_SIZE, *size),)
         glo = self._made.get(key)
         if glo is None:
             glo = self._make(color, depth, size)
@@ -82,9 +84,11 @@ class Framebuffers:
     def forget(self, serial: int) -> None:
         """Delete the framebuffers that hold the texture of ``serial``."""
         for key in self._holders.pop(serial, ()):
-            glo = self._made.pop(key, None)
-            if glo is not None:
-                self._gl.delete("Framebuffers", glo)
+            self._gl.delete("Framebuffers", self._made.pop(key))
+            for part in key:
+                holder = part[1] if part[0] == _DEPTH else part[0]
+                if holder != serial:
+                    self._holders[holder].discard(key)
 
     def release(self) -> None:
         """Delete every framebuffer."""

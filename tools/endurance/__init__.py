@@ -1,0 +1,1 @@
+"""Frames of ever changing settings, sizes, volumes and views, and what memory they leave behind."""
