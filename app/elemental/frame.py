@@ -46,6 +46,7 @@ from elemental.passes.voxel.view import VOXEL_VIEWS, voxel_view
 from elemental.scene.area_lights import AreaLight, area_lights, followed
 from elemental.scene.deform import posed
 from elemental.scene.evaluate import LastPose, Pose
+from elemental.scene.lights import checked
 from elemental.scene.model import Camera, Light, Material, Region, Scene
 from elemental.scene.volumes import blend
 from elemental.settings import Settings
@@ -71,7 +72,9 @@ SPECULAR_VIEWS = frozenset({"specular_gi", "specular_traced"})
 OCTREE_VIEWS = frozenset({"diffuse_gi", *SPECULAR_VIEWS, *STEP_VIEWS, *VOXEL_VIEWS})
 
 OCTREE_KEYS = frozenset({"gi.resolution", "gi.memory_budget_mb", "gi.area_lights"})
-SHADOW_KEYS = frozenset({"shadow.resolution", "shadow.cascades", "shadow.distance"})
+SHADOW_KEYS = frozenset(
+    f"shadow.{name}" for name in ("resolution", "cascades", "distance", "budget")
+) | {"lights.culling", "lights.cutoff"}
 """Settings that the octree and the shadow maps are made for."""
 
 
@@ -146,6 +149,10 @@ class Renderer:
         brightest = sizing.max_emission(self.scene, self._area_lights)
         if self._voxels is not None and brightest > self._voxels.octree.max_emission:
             self._drop_voxels()  # made anew for that range
+
+    def set_lights(self, lights: Sequence[Light]) -> None:
+        """Replace the scene's lights from the next frame on. Raises InputError for what none is."""
+        self.scene.lights = [checked(light) for light in lights]
 
     def set_settings(self, settings: Settings) -> None:
         """Take these settings from the next frame on; what was made for others is made anew."""

@@ -1,5 +1,9 @@
-// Punctual lights by the text of KHR_lights_punctual.
+// Punctual lights by the text of KHR_lights_punctual, and their photometric profiles.
+#include "lib/math.glsl"
 #include "shared/light.glsl"
+
+// Intensity over the peak: columns go round the axis, rows from the way the light points to its back.
+uniform sampler2DArray u_light_profiles;
 
 struct LightSample {
     vec3 to_light;     // unit
@@ -25,6 +29,14 @@ float spot_falloff(Light light, vec3 to_light) {
     return attenuation * attenuation;
 }
 
+// Share of the peak intensity that a luminaire sends towards a point. [LM-63-2002], type C
+float profile_falloff(Light light, vec3 to_light) {
+    vec3 across = cross(light.direction_ws, light.profile_axis_ws);
+    float turned = atan(dot(-to_light, across), dot(-to_light, light.profile_axis_ws)) * (0.5 / PI);
+    float down = acos(clamp(dot(-to_light, light.direction_ws), -1.0, 1.0)) / PI;
+    return textureLod(u_light_profiles, vec3(turned, down, float(light.profile)), 0.0).r;
+}
+
 LightSample sample_light(Light light, vec3 p_ws) {
     LightSample s;
     if (light.kind == LIGHT_DIRECTIONAL) {
@@ -38,6 +50,7 @@ LightSample sample_light(Light light, vec3 p_ws) {
     s.to_light = offset / s.distance_m;
     float falloff = range_window(s.distance_m, light.range) / (s.distance_m * s.distance_m);
     if (light.kind == LIGHT_SPOT) falloff *= spot_falloff(light, s.to_light);
+    if (light.profile >= 0) falloff *= profile_falloff(light, s.to_light);
     s.irradiance = light.intensity * falloff;
     return s;
 }

@@ -15,8 +15,10 @@ struct Light {
     int shadow_view;      // first entry in ShadowViews, or -1: casts no shadow
     uint first_cascade;   // of a directional light: entries in ShadowViews, the finest first
     uint cascade_count;
+    int profile;          // layer of the light profiles, or -1: the same in all directions
     float reserved0;
     float reserved1;
+    vec3 profile_axis_ws; // unit, across direction_ws: the profile's plane at 0 degrees
     float reserved2;
 };
 

@@ -7,6 +7,8 @@ import numpy as np
 from elemental.core.layout import Block
 from elemental.gpu.device import Device
 from elemental.passes.light_pack import pack_lights
+from elemental.passes.light_profiles import LightProfiles, profiles_of
+from elemental.scene.ies import LightProfile
 from elemental.scene.model import Light
 from glsl.harness import run_glsl
 
@@ -27,10 +29,11 @@ def light(kind: str, **fields: object) -> Light:
 def irradiance(device: Device, source: Light, points: np.ndarray) -> np.ndarray:
     packed: Block = pack_lights([source], [-1], [(0, 0)])
     lights = device.buffer("lights", packed)
-    body = "sample_light(lights[0], p).irradiance"
-    values = run_glsl(
-        device, ["lib/lights.glsl"], body, {"p": points}, "vec3", reads={"Lights": lights}
-    )
+    profiles = LightProfiles(device)
+    profiles.update(profiles_of([source]))
+    body, reads = "sample_light(lights[0], p).irradiance", {"Lights": lights, **profiles.reads()}
+    values = run_glsl(device, ["lib/lights.glsl"], body, {"p": points}, "vec3", reads=reads)
+    profiles.release()
     lights.release()
     return values
 
@@ -70,3 +73,25 @@ def test_a_spot_s_edges_are_its_two_angles(device: Device) -> None:
     np.testing.assert_allclose(got[:, 0], want, rtol=2e-4, atol=1e-5)
     np.testing.assert_allclose(got[angle < inner - 1e-6, 0], 2.0, rtol=1e-4)
     assert np.all(got[angle > outer + 1e-3] == 0.0)
+
+
+def test_a_profile_scales_the_intensity_by_its_direction(device: Device) -> None:
+    """Against the file's own angles, for a luminaire that is turned every way."""
+    vertical = np.radians(np.arange(0, 181, 10.0))
+    horizontal = np.radians(np.arange(0, 361, 30.0))
+    v, h = np.meshgrid(vertical, horizontal)
+    candela = 100.0 + 60.0 * np.cos(2.0 * v) + 30.0 * np.sin(v) * np.cos(h + 0.4)
+    profile = LightProfile("test", vertical, horizontal, candela)
+    direction = np.array([0.48, -0.6, 0.64], np.float32)
+    source = light("point", profile=profile, roll=0.7, direction=direction)
+    axis = source.profile_axis.astype(np.float64)
+    across = np.cross(direction, axis)
+    rng = np.random.default_rng(4)
+    away = rng.normal(size=(2000, 3))
+    away /= np.linalg.norm(away, axis=1, keepdims=True)
+    away = away[np.abs(away @ direction) < 0.98]  # where the planes are not all one
+    got = irradiance(device, source, source.position + 2.0 * away)[:, 0]
+    down, turned = np.arccos(away @ direction), np.arctan2(away @ across, away @ axis)
+    want = 8.0 / 4.0 * profile.intensity(down, turned) / profile.peak
+    np.testing.assert_allclose(got, want, atol=0.01 * want.max())
+    assert want.min() < 0.5 * want.max()

@@ -140,7 +140,7 @@ def _environment(scene: Scene, factor: float) -> dict[str, Entry]:
 
 def _punctual(light: Light) -> Entry:
     """A sun, a point or a spot light; `range` has no counterpart, sources are points."""
-    power = {"type": "rgb", "value": (light.color * light.intensity).tolist()}
+    power = {"type": "rgb", "value": light.strength.tolist()}
     if light.kind == "directional":
         direction = light.direction.tolist()
         return {"type": "directional", "direction": direction, "irradiance": power}

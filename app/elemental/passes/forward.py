@@ -49,7 +49,12 @@ def draw_translucent(
     """
     if not scene.batches(BLEND):
         return gb.scene_color
-    reads: dict[str, Ref] = {**scene.reads(), **shadows.reads(), **cells.reads(), **sky.reads()}
+    reads: dict[str, Ref] = {
+        **scene.reads(),
+        **shadows.light_reads(),
+        **cells.reads(),
+        **sky.reads(),
+    }
     if diffuse_gi is not None:
         reads["u_diffuse_gi"] = diffuse_gi
 

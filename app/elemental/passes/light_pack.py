@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from elemental.core.layout import layouts, pack_array
+from elemental.passes.light_profiles import profiles_of
 from elemental.passes.scene_pack import Array
 from elemental.scene.model import Light
 
@@ -15,6 +16,7 @@ KINDS = ("directional", "point", "spot")
 """In the order of LIGHT_*."""
 CONE_MARGIN = 1e-3
 """Least difference of a spot's cone cosines, as KHR_lights_punctual recommends."""
+NO_AXIS = np.zeros(3, np.float32)
 EVERYWHERE = -1.0
 """Radius in LightBounds of a light that reaches everywhere."""
 
@@ -28,7 +30,7 @@ def reach(light: Light, cutoff: float) -> float:
     """
     if math.isfinite(light.range):
         return light.range
-    return math.sqrt(float(light.color.max()) * light.intensity / cutoff)
+    return math.sqrt(float(light.strength.max()) / cutoff)
 
 
 def light_bounds(lights: Sequence[Light], ranges: Sequence[float]) -> Array:
@@ -62,7 +64,7 @@ def pack_lights(
     """(lights,) of the GLSL struct Light; one of intensity 0 where there is none.
 
     first_view: -1 without a shadow; cascades: (first view, count); ranges, m: instead of the
-    lights' own.
+    lights' own. Profiles are numbered as in `profiles_of`.
     """
     if not lights:
         zero, down = np.zeros(3, np.float32), np.array([0.0, -1.0, 0.0], np.float32)
@@ -70,6 +72,7 @@ def pack_lights(
         lights, first_view, cascades, ranges = [dark], [-1], [(0, 0)], None
     if ranges is None:
         ranges = [light.range for light in lights]
+    layers = {id(profile): layer for layer, profile in enumerate(profiles_of(lights))}
     cosines = np.cos([(light.inner_angle, light.outer_angle) for light in lights])
     spot_scale = 1.0 / np.maximum(cosines[:, 0] - cosines[:, 1], CONE_MARGIN)
     return pack_array(
@@ -79,11 +82,13 @@ def pack_lights(
         range=[0.0 if math.isinf(radius) else radius for radius in ranges],
         direction_ws=[light.direction for light in lights],
         source_radius=[light.source_radius for light in lights],
-        intensity=[light.color * light.intensity for light in lights],
+        intensity=[light.strength for light in lights],
         kind=[KINDS.index(light.kind) for light in lights],
         spot_scale=spot_scale,
         spot_offset=-cosines[:, 1] * spot_scale,
         shadow_view=first_view,
         first_cascade=[first for first, _ in cascades],
         cascade_count=[count for _, count in cascades],
+        profile=[layers.get(id(light.profile), -1) for light in lights],
+        profile_axis_ws=[light.profile_axis if light.profile else NO_AXIS for light in lights],
     )

@@ -41,7 +41,7 @@ def shade(
     there is no indirect light. cells: of `cull_to_view`. sky: drawn behind the scene, black
     without it.
     """
-    reads: dict[str, Ref] = {**gb.reads(), **shadows.reads(), **cells.reads()}
+    reads: dict[str, Ref] = {**gb.reads(), **shadows.light_reads(), **cells.reads()}
     params = {"View": view, **shadows.params(), **cells.params()}
     if sky is not None:
         reads |= sky.reads()

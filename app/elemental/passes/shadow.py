@@ -25,6 +25,7 @@ from elemental.gpu.resources import Buffer, Texture
 from elemental.gpu.shaders import Raster
 from elemental.gpu.state import RasterState
 from elemental.passes.culling import views_with_any
+from elemental.passes.light_profiles import LightProfiles
 from elemental.passes.material_pack import BASE_COLOR_SLOT
 from elemental.passes.material_table import material_shader
 from elemental.passes.scene_gpu import GpuScene
@@ -52,6 +53,7 @@ class ShadowMaps:
         self._device = device
         self.settings = settings
         self.planner = ShadowPlanner(settings)
+        self._profiles = LightProfiles(device)
         self.light_key: Hashable = None
         self.lamp_key: Hashable = None
         self.counts: dict[str, int] = {}
@@ -72,6 +74,10 @@ class ShadowMaps:
         buffers = {name: self._buffers[name] for name in ("Lights", "ShadowViews")}
         return {**buffers, "u_shadow_maps": Sampled(self._maps, compare=True)}
 
+    def light_reads(self) -> dict[str, Ref]:
+        """What a shader reads that includes lib/lights.glsl, too."""
+        return {**self.reads(), **self._profiles.reads()}
+
     def params(self) -> dict[str, Block]:
         """The uniform blocks of lib/shadow.glsl: none."""
         return {}
@@ -87,6 +93,7 @@ class ShadowMaps:
             if maps is not None:
                 maps.release()
         self._maps = self._still = None
+        self._profiles.release()
         for buffer in self._buffers.values():
             buffer.release()
         for held in (self._buffers, self._uploaded, self._drawn, self._still_drawn):
@@ -94,6 +101,7 @@ class ShadowMaps:
 
     def place(self, plan: ShadowPlan, scene: GpuScene) -> list[int]:
         """Upload a plan. Returns the numbers of the views whose map has to be drawn anew."""
+        self._profiles.update(plan.profiles)
         self._allocate(plan.layers, bool(scene.dynamic.any() and not scene.dynamic.all()))
         self._upload("Lights", plan.lights)
         self._upload("LightBounds", plan.bounds)
@@ -102,7 +110,8 @@ class ShadowMaps:
         self.counts = {"shadow_maps": len(plan.views), "lights_without_shadow": plan.unshadowed}
         light_fields = [name for name in plan.lights.dtype.names or () if "cascade" not in name]
         fixed = plan.views[: plan.fixed][["clip_from_world", "texel"]]
-        self.lamp_key = (plan.lights[light_fields].tobytes(), fixed.tobytes())
+        profiles = self._profiles.revision
+        self.lamp_key = (plan.lights[light_fields].tobytes(), fixed.tobytes(), profiles)
         self.light_key = (scene.version, self.lamp_key)
         self._forget_changed(plan, scene)
         for drawn in (self._drawn, self._still_drawn):

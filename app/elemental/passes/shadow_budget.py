@@ -116,7 +116,7 @@ def reaches_of_picture(spheres: Array, frustum: ViewFrustum) -> Array:
 
 
 def _strength(light: Light) -> float:
-    return float(light.color.max()) * light.intensity
+    return float(light.strength.max())
 
 
 def _area(halvings: Array, faces: Array) -> float:

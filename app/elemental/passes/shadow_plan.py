@@ -12,10 +12,12 @@ from elemental.core.layout import layouts, pack_array
 from elemental.passes import shadow_fit
 from elemental.passes.camera_view import far_plane
 from elemental.passes.light_pack import light_bounds, pack_lights, reach
+from elemental.passes.light_profiles import profiles_of
 from elemental.passes.scene_pack import Array
 from elemental.passes.shadow_budget import FACES, ShadowBudget, Shares
 from elemental.passes.shadow_fit import Bounds, FittedView, ViewFrustum
 from elemental.passes.shadow_tiles import Tile, TilePool
+from elemental.scene.ies import LightProfile
 from elemental.scene.model import Camera, Light
 
 CULLED_FROM = 5
@@ -41,7 +43,8 @@ class ShadowPlan:
     """lights (L,) of the struct Light, never empty; views (V,) of the struct ShadowView, the
     cascades behind the `fixed` ones, which do not depend on the camera; names and tiles by view;
     `layers` that no camera exceeds; unshadowed: lights that the budget leaves without a map.
-    bounds (L, 4) of `light_bounds`; culled: whether they are worth it."""
+    bounds (L, 4) of `light_bounds`; culled: whether they are worth it. profiles: of
+    `profiles_of`."""
 
     lights: Array
     bounds: Array
@@ -52,6 +55,7 @@ class ShadowPlan:
     fixed: int
     layers: int
     unshadowed: int
+    profiles: list[LightProfile]
 
 
 @dataclass(frozen=True)
@@ -87,6 +91,7 @@ class ShadowPlanner:
     _pool: TilePool = field(init=False)
     _lights: list[Light] = field(default_factory=list)
     _reaches: list[float] = field(default_factory=list)
+    _profiles: list[LightProfile] = field(default_factory=list)
     _spheres: Array = field(default_factory=lambda: light_bounds([], []))
     _fitted: dict[int, tuple[Hashable, list[FittedView]]] = field(default_factory=dict)
     _fixed: FixedViews | None = None
@@ -118,6 +123,7 @@ class ShadowPlanner:
             fixed=len(fixed.names),
             layers=self._pool.layers,
             unshadowed=shares.unshadowed,
+            profiles=self._profiles,
         )
 
     @property
@@ -134,6 +140,7 @@ class ShadowPlanner:
         self._lights = list(lights)
         self._reaches = [reach(light, self.settings.cutoff) for light in lights]
         self._spheres = light_bounds(lights, self._reaches)
+        self._profiles = profiles_of(lights)
         self._fixed = self._packed = None
 
     def _fixed_views(self, lights: Sequence[Light], shares: Shares, bounds: Bounds) -> FixedViews:

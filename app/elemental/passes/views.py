@@ -70,7 +70,7 @@ def light_view(
     g.compute(
         LIGHTS[name, cells.kind],
         f"view.{name}",
-        reads={**gb.reads(), **shadows.reads(), **cells.reads()},
+        reads={**gb.reads(), **shadows.light_reads(), **cells.reads()},
         writes={"o_image": image},
         params={"View": view, **shadows.params(), **cells.params()},
         threads=image.size,

@@ -159,7 +159,7 @@ def _flux_from_outside(scene: Scene) -> float:
     total = 0.0
     for light in scene.lights:
         reach = disc if light.kind == "directional" else 4.0 * math.pi
-        total += float(light.color.sum()) * light.intensity * reach
+        total += float(light.strength.sum()) * reach
     sky = scene.environment
     if sky is not None:
         mean = np.ones(3) if sky.radiance is None else sky.radiance.mean(axis=(0, 1))

@@ -14,6 +14,7 @@ from elemental.core.errors import InputError
 from elemental.core.images import read_environment
 from elemental.scene.gltf import load_gltf
 from elemental.scene.gltf.animations import EVERY
+from elemental.scene.ies import read_ies
 from elemental.scene.model import (
     Camera,
     CameraPath,
@@ -28,6 +29,7 @@ from elemental.scene.model import (
     unique_name,
 )
 from elemental.scene.motion import RigBuilder
+from elemental.scene.photometry import solid_angle
 from elemental.scene.scene_decals import stick
 from elemental.scene.scene_file import SceneFile, flat_settings, read_scene_file
 from elemental.scene.scene_materials import dress
@@ -60,7 +62,7 @@ def load_scene_file(path: Path, animation: str | None = None) -> Scene:
     movers = Movers(builder, () if wanted == "none" else file.motions, path)
     scene.movers = [described(table) for table in file.motions]
     scene.cameras = [_camera(table) for table in file.cameras]
-    scene.lights = [_light(table, i) for i, table in enumerate(file.lights)]
+    scene.lights = [_light(table, i, path) for i, table in enumerate(file.lights)]
     for light in scene.lights:
         node = movers.node_at("light", light.name, light.position)
         light.node = builder.node(node, _light_turn(light)) if node >= 0 else -1
@@ -236,20 +238,32 @@ def _camera_path(table: PathTable) -> CameraPath:
     )
 
 
-def _light(table: LightTable, index: int) -> Light:
-    return Light(
+def _light(table: LightTable, index: int, path: Path) -> Light:
+    profile = None
+    if table.ies is not None:
+        profile = read_ies(path.parent / table.ies, path, f"lights[{index}].ies")
+    away = [0.0, 0.0, -1.0] if profile is None else [0.0, -1.0, 0.0]
+    light = Light(
         name=table.name or f"{table.kind}{index}",
         kind=table.kind,
         color=_vec(table.color),
-        intensity=table.intensity,
+        intensity=1.0 if table.intensity is None else table.intensity,
         position=_vec(table.position or [0.0, 0.0, 0.0]),
-        direction=_unit(_vec(table.direction or [0.0, 0.0, -1.0])),
+        direction=_unit(_vec(table.direction or away)),
         range=table.range or math.inf,
         inner_angle=math.radians(table.inner_angle_deg),
         outer_angle=math.radians(table.outer_angle_deg),
         source_radius=table.source_radius,
         casts_shadow=table.casts_shadow,
+        temperature=table.temperature,
+        profile=profile,
+        roll=math.radians(table.roll_deg),
     )
+    if table.lumen is not None:
+        light.intensity = table.lumen / solid_angle(light)
+    elif profile is not None and table.intensity is None:
+        light.intensity = profile.peak
+    return light
 
 
 def _environment(table: EnvironmentTable, path: Path) -> Environment:

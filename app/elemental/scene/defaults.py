@@ -87,4 +87,4 @@ def note_exposure(scene: Scene, exposure: float) -> None:
 
 def _brightest_sun(scene: Scene) -> float:
     suns = [light for light in scene.lights if light.kind == "directional"]
-    return max((float(sun.intensity * sun.color.max()) for sun in suns), default=0.0)
+    return max((float(sun.strength.max()) for sun in suns), default=0.0)

@@ -80,7 +80,7 @@ def light_voxels(
         "Bricks": octree.bricks,
         "Attributes": octree.attributes,
         "VoxelList": octree.voxel_list,
-        **shadows.reads(),
+        **shadows.light_reads(),
         **cells.reads(),
     }
     params = {**octree.params, **shadows.params(), **cells.params()}

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from elemental.scene.blackbody import COOLEST, HOTTEST
 from elemental.scene.tables.base import (
     Color,
     HalfAngle,
@@ -23,7 +24,11 @@ class LightTable(Table):
     position: Vec3 | None = None
     direction: Vec3 | None = None
     color: Color = [1.0, 1.0, 1.0]
-    intensity: NonNegative = 1.0
+    temperature: Annotated[float, Field(ge=COOLEST, le=HOTTEST)] | None = None
+    intensity: NonNegative | None = None
+    lumen: NonNegative | None = None
+    ies: Name | None = None
+    roll_deg: Annotated[float, Field(ge=-360.0, le=360.0)] = 0.0
     range: Positive | None = None
     inner_angle_deg: Annotated[float, Field(ge=0.0, le=90.0)] = 0.0
     outer_angle_deg: HalfAngle = 45.0
@@ -38,6 +43,11 @@ class LightTable(Table):
                 raise ValueError(f"a {self.kind} light needs a {key}")
         if self.direction is not None and not any(self.direction):
             raise ValueError("direction has length 0")
+        for key in ("lumen", "ies"):
+            if self.kind == "directional" and getattr(self, key) is not None:
+                raise ValueError(f"a directional light has no {key}; its intensity is in lux")
+        if self.lumen is not None and self.intensity is not None:
+            raise ValueError("intensity and lumen say the same thing; give one")
         if self.kind == "spot" and self.inner_angle_deg > self.outer_angle_deg:
             raise ValueError("inner_angle_deg is greater than outer_angle_deg")
         return self
