@@ -323,7 +323,7 @@ class Renderer:
         )
         if view_name == "scene_color":
             return scene_color
-        return develop(g, view, scene_color, gb, s, self._post)
+        return develop(g, view, scene_color, gb, s, self._post, self._meshes)
 
     @property
     def _cone_split(self) -> int:

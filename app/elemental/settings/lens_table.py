@@ -1,4 +1,4 @@
-"""The rows of what happens in the lens: bloom, dirt, reflections, depth of field."""
+"""The rows of what happens in the lens: bloom, dirt, reflections, depth of field, motion blur."""
 
 from __future__ import annotations
 
@@ -78,4 +78,10 @@ LENS_TABLE = (
             unit="cm", lo=0, hi=10000, volume=True),
     Setting("dof.max_bokeh_size", "float", 15.0, "diameter of the fully grown blur at f/1",
             unit="% of the width", lo=0, hi=32, volume=True),
+    # Off by default: a still and a frame of a moving scene then show the same.
+    Setting("motion_blur.amount", "float", 0.0,
+            "share of the time between two frames that the shutter is open; 0.5 is a film's",
+            lo=0, hi=1, volume=True),
+    Setting("motion_blur.max", "float", 5.0, "longest streak",
+            unit="% of the width", lo=0, hi=50, volume=True),
 )  # fmt: skip

@@ -18,8 +18,10 @@ from elemental.passes.post.film import film_block
 from elemental.passes.post.fxaa import fxaa
 from elemental.passes.post.history import PostHistory
 from elemental.passes.post.lens_flare import is_on, lens_flares
+from elemental.passes.post.motion_blur import motion_blur
 from elemental.passes.post.scale import downsample
 from elemental.passes.post.tonemap import tonemap
+from elemental.passes.scene_gpu import GpuScene
 
 
 def develop(
@@ -29,14 +31,17 @@ def develop(
     gb: GBuffer,
     settings: Mapping[str, Any],
     history: PostHistory,
+    scene: GpuScene | None = None,
 ) -> TextureHandle:
     """The finished picture, (H, W) RGBA8 display codes, of radiance (H, W) RGBA16F.
 
-    ``settings``: this frame's, blended or not; ``history``: the renderer's, one step a frame.
+    ``settings``: this frame's, blended or not; ``history``: the renderer's, one step a frame;
+    ``scene``: what may move in it.
     """
     s = settings
     history.advance(view)
     scene_color = depth_of_field(g, view, scene_color, gb.depth, s)
+    scene_color = motion_blur(g, view, history.view_before, scene_color, gb.depth, s, scene)
     flares = is_on(s)
     bright = flares or s["bloom.intensity"] > 0.0
     half = downsample(g, scene_color) if bright or history.eye.is_on(s) else None
