@@ -137,7 +137,7 @@ def test_every_setting_is_found_by_its_key(hands: Hands, scene_file: Path) -> No
     robot = hands(scene_file)
     robot.click("search")
     for key in SETTINGS:
-        robot.desk.searched = ""
+        robot.desk.pages.settings = ""
         robot.type(key, enter=False)
         assert robot.sees(key), key
     assert sum(map(len, GROUPS.values())) == len(SETTINGS)

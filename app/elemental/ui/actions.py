@@ -6,14 +6,23 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from elemental.core.errors import InputError
+from elemental.core.images import write_exr
+from elemental.passes.inspect import Pixels, Target
 from elemental.picture import save_picture
 from elemental.scene.evaluate import placed_camera
 from elemental.ui import editor
+from elemental.ui.panel import buffers
 from elemental.ui.panel.file_dialog import FileDialog
+from elemental.ui.panel.scene import Selection
 
 if TYPE_CHECKING:
     from elemental.ui.desk import Desk
+
+PAGE_OF = {"volume": "Volumes", "light": "Lights", "material": "Materials"}
+"""The page on which a kind of thing is changed."""
 
 
 def act(desk: Desk, action: str, index: int = 0, shift: bool = False) -> bool:
@@ -127,6 +136,42 @@ def _screenshot(desk: Desk) -> None:
     path = Path(f"elemental-{stamp}-{desk.drawn}.png").resolve()
     try:
         save_picture(path, desk.renderer.read(desk.frame), desk.frame.is_linear)
+    except InputError as error:
+        desk.say(str(error), "error")
+    else:
+        desk.say(f"wrote {path}")
+
+
+def choose(desk: Desk, selection: Selection) -> None:
+    """Show something of the scene where it can be changed; go to a camera."""
+    desk.pages.selection = selection
+    kind, index = selection
+    if kind == "camera":
+        _pick_camera(desk, index)
+    elif PAGE_OF.get(kind) in [page.name for page in desk.workspace.pages]:
+        desk.workspace.bring_to_front(PAGE_OF[kind])
+
+
+def look_at(desk: Desk, name: str) -> None:
+    """Show a target of the frame in the buffer viewer."""
+    report = desk.observers.report
+    for target, _ in buffers.targets_of(report) if report is not None else ():
+        if target.name == name:
+            buffers.choose(desk.pages.buffers, target)
+            desk.workspace.bring_to_front("Buffers")
+            return
+
+
+def save_buffer(desk: Desk, target: Target, pixels: Pixels) -> None:
+    """Write a target's values as EXR into the working directory, in three channels or four."""
+    channels = pixels.shape[2]
+    if channels == 1:
+        pixels = pixels.repeat(3, axis=2)
+    elif channels == 2:
+        pixels = np.concatenate([pixels, np.zeros_like(pixels[..., :1])], axis=2)
+    path = Path(f"elemental-{target.name.replace('/', '-')}-{desk.drawn}.exr").resolve()
+    try:
+        write_exr(path, np.ascontiguousarray(pixels))
     except InputError as error:
         desk.say(str(error), "error")
     else:

@@ -25,7 +25,8 @@ from elemental.ui.editor import Applied, document_of, reopening_words
 from elemental.ui.fly_camera import FlyCamera
 from elemental.ui.gui import Gui
 from elemental.ui.log import Kind, Log
-from elemental.ui.pages import menu_of, overlays, pages_of
+from elemental.ui.observers import Observers
+from elemental.ui.pages import PageState, menu_of, overlays, pages_of
 from elemental.ui.panel.file_dialog import FileDialog
 from elemental.ui.preferences import Preferences
 from elemental.ui.present import present
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
 
 MESSAGE_S = 4.0
 """How long a message stays."""
+HISTORY_FRAMES = 240
 
 
 @dataclass(frozen=True)
@@ -72,7 +74,8 @@ class Desk:
         self.rides = stage.camera_moves
         """Whether the scene moves the camera, until the user does."""
         self.clock = SceneClock()
-        self.averages = Averages()
+        self.averages, self.cpu_averages = Averages(), Averages()
+        """GPU and CPU times by pass."""
         self.view = "final"
         self.drawn = 0
         self.shows_panel, self.shows_hud = preferences.shows_panel, preferences.shows_hud
@@ -81,7 +84,10 @@ class Desk:
         self.problems: list[str] = []
         self.log = Log()
         self.started = time.perf_counter()
-        self.searched = ""
+        self.pages = PageState()
+        self.observers = Observers(device)
+        self.history = np.zeros(HISTORY_FRAMES, np.float32)
+        """Times from frame to frame, oldest first, ms."""
         self.dialog: FileDialog | None = None
         self.window_acts: Callable[[str], None] = lambda _action: None
         """Does what only a window can."""
@@ -137,9 +143,11 @@ class Desk:
         self.renderer.resize((area[2], area[3]))
         if self.rides:
             self.fly.jump(self.stage.camera_at(self.clock.time_s))
+        self.observers.before_frame(self.renderer)
         self.frame = self.renderer.render(
             self.fly.camera(), self.clock.time_s, self.drawn, self.view
         )
+        self.observers.after_frame()
         if area[2:] != size:
             self.device.clear_screen(theme.BACKDROP, self.onto)
         present(self.device, self.frame, area, self.onto)
@@ -153,8 +161,12 @@ class Desk:
 
     def _lay_out(self, size: tuple[int, int], seconds: float) -> tuple[int, int, int, int]:
         """Make the widgets. Returns the picture's area, from the bottom left corner."""
-        timings = [(timing.name, timing.gpu_ms) for timing in self.device.timings]
-        self.averages.update([("frame", 1e3 * seconds), *timings], seconds)
+        timings = self.device.timings
+        gpu_ms = [(timing.name, timing.gpu_ms) for timing in timings]
+        self.averages.update([("frame", 1e3 * seconds), *gpu_ms], seconds)
+        self.cpu_averages.update([(timing.name, timing.cpu_ms) for timing in timings], seconds)
+        self.history[:-1] = self.history[1:]
+        self.history[-1] = 1e3 * seconds
         self.wall_s = seconds
         place: Rect = (0.0, 0.0, *size)
         while True:
@@ -281,6 +293,7 @@ class Desk:
 
     def release(self) -> None:
         """Free the renderer and ImGui; the device is its maker's."""
+        self.observers.release()
         self.gui.release()
         self.renderer.release()
 

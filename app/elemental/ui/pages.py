@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING
 
 from elemental.frame import VIEWS
+from elemental.ui import actions
 from elemental.ui.gui import SCALES
 from elemental.ui.hud import Figures, draw_hud, draw_keys, draw_message
+from elemental.ui.panel.buffers import BufferView, buffers_page
+from elemental.ui.panel.graph import GraphView, graph_page
+from elemental.ui.panel.log import LogFilter, log_page
 from elemental.ui.panel.menu import MenuState, menu_bar
+from elemental.ui.panel.scene import Selection, scene_page
 from elemental.ui.panel.settings import settings_page
+from elemental.ui.panel.timeline import timeline_page
 from elemental.ui.widgets import Rect, Widgets
 from elemental.ui.workspace import Page
 
@@ -16,14 +24,59 @@ if TYPE_CHECKING:
     from elemental.ui.desk import Desk
 
 
+@dataclass
+class PageState:
+    """What the pages keep from frame to frame."""
+
+    settings: str = ""
+    """What is searched for."""
+    scene: str = ""
+    selection: Selection | None = None
+    log: LogFilter = field(default_factory=LogFilter)
+    buffers: BufferView = field(default_factory=BufferView)
+    graph: GraphView = field(default_factory=GraphView)
+
+
 def pages_of(desk: Desk) -> list[Page]:
     """The pages over a desk, in the order of their tabs."""
+    state, observers = desk.pages, desk.observers
+
+    def scene(w: Widgets) -> None:
+        opened, parts = desk.stage.scene, desk.document.state
+        choose = partial(actions.choose, desk)
+        state.scene = scene_page(w, opened, parts, state.selection, state.scene, choose)
 
     def settings(w: Widgets) -> None:
-        desk.searched = settings_page(w, desk.document, desk.searched)
+        state.settings = settings_page(w, desk.document, state.settings)
+
+    def timeline(w: Widgets) -> None:
+        gpu_ms = dict(desk.averages.values)
+        frame_ms = gpu_ms.pop("frame", 0.0)
+        cpu_ms = desk.cpu_averages.values
+        timeline_page(w, gpu_ms, cpu_ms, frame_ms, desk.gui_ms, desk.history[-desk.drawn :])
+
+    def graph(w: Widgets) -> None:
+        observers.want("report")
+        asked = graph_page(w, state.graph, observers.report)
+        if asked is not None:
+            actions.look_at(desk, asked)
+
+    def buffers(w: Widgets) -> None:
+        observers.want("report")
+        observers.want("buffer")
+        save = partial(actions.save_buffer, desk)
+        buffers_page(w, state.buffers, observers.inspector, observers.report, save)
+
+    def log(w: Widgets) -> None:
+        log_page(w, desk.log, state.log)
 
     return [
-        Page("Settings", "right", settings, "every setting, with its unit, range and default"),
+        Page("Scene", "left", scene),
+        Page("Settings", "right", settings),
+        Page("Timeline", "bottom", timeline),
+        Page("Graph", "bottom", graph),
+        Page("Buffers", "bottom", buffers),
+        Page("Log", "bottom", log),
     ]
 
 

@@ -90,6 +90,13 @@ class Widgets:
         finally:
             imgui.pop_font()
 
+    def flow(self, width: float) -> None:
+        """Stay on the line if ``width`` more pixels fit, else go on on the next."""
+        right = imgui.get_cursor_screen_pos().x + imgui.get_content_region_avail().x
+        end = imgui.get_item_rect_max().x + imgui.get_style().item_spacing.x + width
+        if end <= right:
+            imgui.same_line()
+
     # Plain items -------------------------------------------------------------------------------
 
     def button(self, label: str, name: str = "", enabled: bool = True, help: str = "") -> bool:
@@ -134,7 +141,7 @@ class Widgets:
         """A heading that folds; returns whether what is under it shows."""
         flags = imgui.TreeNodeFlags_.default_open.value if is_open else 0
         shows = bool(imgui.collapsing_header(title, flags))
-        self.note(title)
+        self.note(title.partition("###")[2] or title)
         return shows
 
     # Rows of a label and a value ---------------------------------------------------------------

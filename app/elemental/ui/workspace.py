@@ -11,7 +11,7 @@ from imgui_bundle import imgui
 from elemental.ui.widgets import Rect, Widgets
 
 DOCK = "workspace"
-LEFT_SHARE, RIGHT_SHARE, BOTTOM_SHARE = 0.17, 0.32, 0.30
+LEFT_SHARE, RIGHT_SHARE, BOTTOM_SHARE = 0.17, 0.32, 0.34
 """Of what is left of the window's width and height, in this order."""
 SETTLING_FRAMES = 3
 """Until docked windows have taken their places."""
@@ -24,7 +24,6 @@ class Page:
     name: str
     place: Literal["left", "right", "bottom"]
     draw: Callable[[Widgets], None]
-    help: str
 
 
 class Workspace:
@@ -34,7 +33,8 @@ class Workspace:
         self.widgets = widgets
         self.pages = tuple(pages)
         self.hidden: set[str] = set()
-        self._front: str | None = None
+        self._front: dict[str, int] = {}
+        """Pages to bring to the front, and for how many frames yet: docks settle slowly."""
         self._wants_layout = True
         if layout:
             imgui.load_ini_settings_from_memory(layout)
@@ -52,7 +52,11 @@ class Workspace:
     def bring_to_front(self, name: str) -> None:
         """Show a page before those that share its place, with the next frame."""
         self.hidden.discard(name)
-        self._front = name
+        place = next(page.place for page in self.pages if page.name == name)
+        for page in self.pages:
+            if page.place == place:
+                self._front.pop(page.name, None)
+        self._front[name] = SETTLING_FRAMES
 
     def draw(self, menu: Callable[[Widgets], None]) -> Rect:
         """All widgets of a frame. Returns the picture's place between them."""
@@ -74,11 +78,11 @@ class Workspace:
         for page in self.pages:
             if page.name not in self.hidden:
                 self._draw_page(page)
-        self._front = None
+        self._front = {name: left - 1 for name, left in self._front.items() if left > 1}
         return place
 
     def _draw_page(self, page: Page) -> None:
-        if page.name == self._front:
+        if page.name in self._front:
             imgui.set_next_window_focus()
         self.widgets.page = page.name
         shows, stays = imgui.begin(page.name, True)
@@ -105,3 +109,8 @@ class Workspace:
         for page in self.pages:
             build.dock_builder_dock_window(page.name, places[page.place])
         build.dock_builder_finish(dock)
+        places_front = {page.place for page in self.pages if page.name in self._front}
+        for page in self.pages:
+            if page.place not in places_front:
+                places_front.add(page.place)
+                self._front[page.name] = SETTLING_FRAMES
