@@ -14,6 +14,9 @@
 #ifndef LUT
 #define LUT 0       // 1: three curves, 3: a cube
 #endif
+#ifndef LUT2
+#define LUT2 0      // the same of another one, while volumes blend two
+#endif
 
 uniform sampler2D u_scene_color;
 #if BLOOM
@@ -26,6 +29,11 @@ uniform sampler2D u_dirt;
 uniform sampler2D u_lut;
 #elif LUT == 3
 uniform sampler3D u_lut;
+#endif
+#if LUT2 == 1
+uniform sampler2D u_lut2;
+#elif LUT2 == 3
+uniform sampler3D u_lut2;
 #endif
 
 flat in float v_exposure;
@@ -47,20 +55,27 @@ vec3 scene_radiance(ivec2 pixel, vec2 size, vec2 jitter) {
     return max(radiance, vec3(0.0));
 }
 
+vec3 look_up(sampler3D cube, vec3 place) {
+    return textureLod(cube, place, 0.0).rgb;
+}
+
+vec3 look_up(sampler2D curves, vec3 place) {
+    return vec3(textureLod(curves, vec2(place.r, 0.5), 0.0).r,
+                textureLod(curves, vec2(place.g, 0.5), 0.0).g,
+                textureLod(curves, vec2(place.b, 0.5), 0.0).b);
+}
+
 vec3 graded(vec3 display) {
+    vec3 result = display;
 #if LUT
     vec3 place = display * u_film.lut_scale + u_film.lut_offset;
-#if LUT == 3
-    vec3 looked_up = textureLod(u_lut, place, 0.0).rgb;
-#else
-    vec3 looked_up = vec3(textureLod(u_lut, vec2(place.r, 0.5), 0.0).r,
-                          textureLod(u_lut, vec2(place.g, 0.5), 0.0).g,
-                          textureLod(u_lut, vec2(place.b, 0.5), 0.0).b);
+    result = mix(display, look_up(u_lut, place), u_film.lut_share);
 #endif
-    return mix(display, looked_up, u_film.lut_share);
-#else
-    return display;
+#if LUT2
+    vec3 place2 = display * u_film.lut2_scale + u_film.lut2_offset;
+    result += u_film.lut2_share * (look_up(u_lut2, place2) - display);
 #endif
+    return result;
 }
 
 void main() {

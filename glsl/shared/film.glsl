@@ -15,5 +15,9 @@ layout(std140) uniform Film {
     float lut_share;
     vec3 lut_offset;
     uint grain_seed;
+    vec3 lut2_scale;         // of the other LUT, while volumes blend two
+    float lut2_share;
+    vec3 lut2_offset;
+    float reserved0;
     vec3 dirt_tint;
 } u_film;

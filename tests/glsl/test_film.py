@@ -23,7 +23,7 @@ TABLE = (0.88, 0.55, 0.26, 0.0, 0.04)
 
 def film(**given: float) -> Block:
     names = {key.replace("__", "."): value for key, value in given.items()}
-    return film_block(Settings(names), None, 0)
+    return film_block(Settings(names), (), 0)
 
 
 def curve(device: Device, x: Array, *values: float) -> Array:

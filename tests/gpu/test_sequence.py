@@ -147,6 +147,19 @@ def test_frames_of_anything_else_are_not_mixed_in(device: Device, scene: Path) -
 
 
 @pytest.mark.parametrize("scene", ["still"], indirect=True)
+def test_a_changed_file_that_a_setting_names_is_noticed(device: Device, scene: Path) -> None:
+    lut = scene.parent / "a.cube"
+    rows = [f"{r} {g} {b}" for b in (0, 1) for g in (0, 1) for r in (0, 1)]
+    lut.write_text("\n".join(["LUT_3D_SIZE 2", *rows]))
+    words = (f"color_grading.lut={lut}",)
+    list(sequence(scene, "a", 1, words=words).render(device))
+    assert not any(step.rendered for step in sequence(scene, "a", 1, words=words).render(device))
+    lut.write_text("\n".join(["LUT_3D_SIZE 2", *reversed(rows)]))
+    with pytest.raises(InputError, match="another file that a setting names"):
+        next(sequence(scene, "a", 1, words=words).render(device))
+
+
+@pytest.mark.parametrize("scene", ["still"], indirect=True)
 def test_overwriting_leaves_no_frame_of_before(device: Device, scene: Path) -> None:
     list(sequence(scene, "a", 6).render(device))
     before = made(scene.parent / "a")

@@ -26,6 +26,12 @@ def glsl_root() -> Path:
     return _root("glsl")
 
 
+def texture_file(name: str) -> Path:
+    """The file that a setting names: one of content/textures/, else a path."""
+    shipped = content_root() / "textures" / name
+    return shipped if shipped.is_file() else Path(name)
+
+
 @cache
 def content_root() -> Path:
     """Folder of scenes, materials and textures that come with the program."""

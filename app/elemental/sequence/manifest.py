@@ -16,10 +16,12 @@ from elemental import __version__
 from elemental.core.digest import digest
 from elemental.core.errors import InputError
 from elemental.core.files import read_file
+from elemental.core.paths import texture_file
 from elemental.gpu.device import Device
 from elemental.report import settings_entry, write_json
 from elemental.scene.model import Scene
 from elemental.session import Stage
+from elemental.settings import SETTINGS
 
 SCHEMA = "elemental.sequence/1"
 FILE_NAME = "sequence.json"
@@ -43,7 +45,17 @@ def identity(
         "camera": digest([stage.camera, stage.path]),
         "scene": digest(seen),
         "settings": settings_entry(stage.settings),
+        "file that a setting names": _named_files(stage),
     }
+
+
+def _named_files(stage: Stage) -> dict[str, str]:
+    """Digests of the files that settings and volumes name, by those names."""
+    keys = [key for key, setting in SETTINGS.items() if setting.unit == "file"]
+    overrides = [volume.overrides for volume in stage.scene.volumes]
+    names = {str(s[key]) for s in (stage.settings, *overrides) for key in keys if s.get(key)}
+    files = {name: texture_file(name) for name in sorted(names)}
+    return {name: digest(file.read_bytes()) for name, file in files.items() if file.is_file()}
 
 
 def scene_file(scene: Scene) -> str:
@@ -110,6 +122,6 @@ def _difference(name: str, known: Any, value: Any) -> str:
     if name == "settings" and isinstance(known, dict):
         key = next(k for k in {**value, **known} if known.get(k) != value.get(k))
         return f"{key} ({known.get(key)}, not {value.get(key)})"
-    if name in ("scene", "camera"):
+    if name in ("scene", "camera", "file that a setting names"):
         return f"{name}, or of what it was before a change"
     return f"{name} ({known}, not {value})"

@@ -10,9 +10,12 @@ import numpy as np
 import pytest
 
 from elemental.core.errors import InputError
+from elemental.scene.volumes import Volume, blend
 from glsl.test_film import TABLE, model
 from gpu.post.conftest import MakeDarkroom
 from gpu.post.darkroom import Array, flat, hdr
+
+LUT = "color_grading.lut"
 
 
 def codes(radiance: Array) -> Array:
@@ -94,6 +97,27 @@ def test_curves_and_domains_are_honoured(darkroom: MakeDarkroom, tmp_path: Path)
     Path(name).write_text(text)
     steep = darkroom(color_grading__lut=name).develop(pixels).astype(float)
     np.testing.assert_allclose(steep[..., :3], np.maximum(255 - 2 * plain[..., :3], 0), atol=4.5)
+
+
+@pytest.mark.parametrize("weight", [0.0, 0.25, 0.75, 1.0])
+def test_volumes_blend_two_tables_by_their_weights(
+    darkroom: MakeDarkroom, tmp_path: Path, weight: float
+) -> None:  # PP-11
+    pixels = hdr(32, 32)
+    swapped = cube_file(tmp_path / "swapped.cube", 5, 3, "swapped")
+    inverted = cube_file(tmp_path / "inverted.cube", 16, 1, "inverted")
+    room = darkroom()
+    pictures = {}
+    for name in ("", swapped, inverted):
+        room.set(color_grading__lut=name)
+        pictures[name] = room.develop(pixels).astype(float)
+    base = room.settings
+    for below, above in (("", swapped), (swapped, inverted), (inverted, "")):
+        volume = Volume("v", unbound=True, blend_weight=weight, overrides={LUT: above})
+        room.settings = blend(base.replace({LUT: below}), [volume], (0, 0, 0))
+        got = room.develop(pixels)[..., :3].astype(float)
+        want = (1 - weight) * pictures[below] + weight * pictures[above]
+        assert np.abs(got - want[..., :3]).max() <= 2  # codes: each side is rounded and dithered
 
 
 def test_a_bad_table_is_refused_before_the_first_frame(

@@ -5,9 +5,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 from elemental.core.layout import Block
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import TextureHandle
@@ -22,6 +19,7 @@ from elemental.passes.post.motion_blur import motion_blur
 from elemental.passes.post.scale import downsample
 from elemental.passes.post.tonemap import tonemap
 from elemental.passes.scene_gpu import GpuScene
+from elemental.settings import Settings
 
 
 def develop(
@@ -29,7 +27,7 @@ def develop(
     view: Block,
     scene_color: TextureHandle,
     gb: GBuffer,
-    settings: Mapping[str, Any],
+    settings: Settings,
     history: PostHistory,
     scene: GpuScene | None = None,
 ) -> TextureHandle:
@@ -60,7 +58,8 @@ def develop(
             width=scene_color.width,
         )
     dirt = history.textures.mask(s["bloom.dirt_mask"]) if s["bloom.dirt_intensity"] else None
-    lut = history.textures.lut(s["color_grading.lut"]) if s["color_grading.intensity"] else None
-    film = film_block(s, lut.table if lut else None, int(view["frame"]))
-    image = tonemap(g, exposed, film, scene_color, bloom=light, dirt=dirt, lut=lut)
+    graded = history.textures.grading(s)
+    film = film_block(s, [(lut.table, share) for lut, share in graded], int(view["frame"]))
+    luts = [lut for lut, _ in graded]
+    image = tonemap(g, exposed, film, scene_color, bloom=light, dirt=dirt, luts=luts)
     return fxaa(g, image) if s["fxaa.enabled"] else image

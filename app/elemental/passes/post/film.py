@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -21,6 +21,9 @@ FRINGE = 0.01
 """How far each of red and blue is moved at the rim at fringe 1, share of the picture [inferred]."""
 NEUTRAL_KELVIN = 6500.0
 
+NO_LUT = ((1.0, 1.0, 1.0), (0.0, 0.0, 0.0), 0.0)
+"""Scale, offset and share where there is none."""
+
 CURVE = ("film.slope", "film.toe", "film.shoulder", "film.black_clip", "film.white_clip")
 
 # Bradford's cone responses [Lam85] and the linear Rec. 709 primaries.
@@ -33,12 +36,10 @@ XYZ_FROM_RGB = np.array(
 )  # fmt: skip
 
 
-def film_block(s: Mapping[str, Any], lut: CubeLut | None, frame: int) -> Block:
-    """The block Film of a frame."""
+def film_block(s: Mapping[str, Any], luts: Sequence[tuple[CubeLut, float]], frame: int) -> Block:
+    """The block Film of a frame. ``luts``: up to two tables, each with its share of the picture."""
     grain = s["grain.intensity"] + s["grain.jitter"] > 0.0
-    size = lut.size if lut is not None else 2
-    low, span = (lut.low, lut.high - lut.low) if lut is not None else (np.zeros(3), np.ones(3))
-    scale = (size - 1) / size / span
+    first, second = (_lut(*luts[k]) if k < len(luts) else NO_LUT for k in range(2))
     return pack(
         layouts().block("Film"),
         graded_from_scene=_grading(s["film.white_point"], s["scene_color.tint"]),
@@ -47,12 +48,21 @@ def film_block(s: Mapping[str, Any], lut: CubeLut | None, frame: int) -> Block:
         grain=s["grain.intensity"],
         grain_jitter_px=s["grain.jitter"],
         fringe=FRINGE * s["scene_color.fringe"],
-        lut_scale=scale,
-        lut_share=s["color_grading.intensity"],
-        lut_offset=0.5 / size - low * scale,
+        lut_scale=first[0],
+        lut_offset=first[1],
+        lut_share=first[2],
+        lut2_scale=second[0],
+        lut2_offset=second[1],
+        lut2_share=second[2],
         grain_seed=frame % (1 << 16) if grain else 0,
         dirt_tint=[s["bloom.dirt_intensity"] * channel for channel in s["bloom.dirt_tint"]],
     )
+
+
+def _lut(table: CubeLut, share: float) -> tuple[Any, Any, float]:
+    """(scale, offset, share): from display values to the texture's coordinates."""
+    scale = (table.size - 1) / table.size / (table.high - table.low)
+    return scale, 0.5 / table.size - table.low * scale, share
 
 
 @lru_cache(maxsize=64)

@@ -12,12 +12,14 @@ import numpy as np
 from elemental.core.cube_lut import CubeLut, read_cube_lut
 from elemental.core.errors import InputError
 from elemental.core.images import read_png_jpeg_webp
-from elemental.core.paths import content_root
+from elemental.core.paths import texture_file
 from elemental.gpu.device import Device
 from elemental.gpu.formats import RGBA16F, SRGB8_A8
 from elemental.gpu.resources import Texture, mip_count
+from elemental.settings import Settings
 
-FOLDER = "textures"
+MOST_LUTS = 2
+"""Tables that one picture is graded by."""
 MOST_CURVE_TEXELS = 4096
 """Longer curves are resampled to this: drivers of GL 4.3 have textures of 16,384 at least, displays
 tell 1,024 levels apart."""
@@ -58,6 +60,20 @@ class PostTextures:
         """The table of a `.cube` file; None for an empty name and for one in ``problems``."""
         return self._get(self._luts, name, self._load_lut)
 
+    def grading(self, s: Settings) -> list[tuple[Lut, float]]:
+        """The tables that grade the picture, two at most, each with its share of it.
+
+        While volumes blend several, the two of the largest shares count by those, none by its
+        own: the picture as it is takes the rest.
+        """
+        intensity = s["color_grading.intensity"]
+        if intensity <= 0.0:
+            return []
+        named = [(name, share) for name, share in s.mix("color_grading.lut") if name and share > 0]
+        named.sort(key=lambda part: -part[1])
+        found = [(self.lut(name), intensity * share) for name, share in named[:MOST_LUTS]]
+        return [(lut, share) for lut, share in found if lut is not None]
+
     def mask(self, name: str) -> Mask | None:
         """A PNG, JPEG or WebP image; None as for ``lut``."""
         return self._get(self._masks, name, self._load_mask)
@@ -75,9 +91,8 @@ class PostTextures:
         if not name:
             return None
         if name not in known:
-            shipped = content_root() / FOLDER / name
             try:
-                known[name] = load(shipped if shipped.is_file() else Path(name))
+                known[name] = load(texture_file(name))
             except InputError as error:
                 self.problems[name] = error
                 known[name] = None

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
 
 from elemental.core.layout import Block
@@ -19,8 +20,9 @@ SCREEN = "post/screen.vert.glsl"
 
 
 @cache
-def _shader(bloom: bool, dirt: bool, resample: bool, lut: int) -> Raster:
-    defines = {"BLOOM": int(bloom), "DIRT": int(dirt), "RESAMPLE": int(resample), "LUT": lut}
+def _shader(bloom: bool, dirt: bool, resample: bool, luts: tuple[int, ...]) -> Raster:
+    defines = {"BLOOM": int(bloom), "DIRT": int(dirt), "RESAMPLE": int(resample)}
+    defines |= dict(zip(("LUT", "LUT2"), luts, strict=False))
     return Raster(SCREEN, "post/tonemap.frag.glsl", defines=defines)
 
 
@@ -32,11 +34,12 @@ def tonemap(
     *,
     bloom: AnyTexture | None = None,
     dirt: Mask | None = None,
-    lut: Lut | None = None,
+    luts: Sequence[Lut] = (),
 ) -> TextureHandle:
     """(H, W) RGBA8, sRGB encoded, of radiance (H, W).
 
-    bloom: exposed light to add, of half the size rounded up; dirt: mask that adds it once more.
+    bloom: exposed light to add, of half the size rounded up; dirt: mask that adds it once more;
+    luts: up to two, as in ``film``.
     """
     dirt = dirt if bloom is not None else None
     image = g.texture("tonemap", size=scene_color.size, format=RGBA8)
@@ -46,12 +49,11 @@ def tonemap(
         reads["u_bloom"] = bloom
     if dirt is not None:
         reads["u_dirt"] = Sampled(dirt.texture, "linear")
-    kind = 0
-    if lut is not None:
-        reads["u_lut"] = Sampled(lut.texture, "linear")
-        kind = 3 if lut.table.is_cube else 1
+    for name, lut in zip(("u_lut", "u_lut2"), luts, strict=False):
+        reads[name] = Sampled(lut.texture, "linear")
+    kinds = tuple(3 if lut.table.is_cube else 1 for lut in luts)
     g.raster(
-        _shader(bloom is not None, dirt is not None, resample, kind),
+        _shader(bloom is not None, dirt is not None, resample, kinds),
         color=image,
         reads=reads,
         params={**exposed.params, "Film": film},
