@@ -30,6 +30,7 @@ from elemental.passes.light_cells import cull_to_view
 from elemental.passes.post.develop import develop
 from elemental.passes.post.history import PostHistory
 from elemental.passes.post.lens_flare import SpriteCounters
+from elemental.passes.post.scale import drawn_size
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.shade import shade
 from elemental.passes.shadow import ShadowMaps, update_shadows
@@ -247,10 +248,11 @@ class Renderer:
     ) -> TextureHandle:
         """The passes of a frame. What the asked-for image does not need, the graph leaves out."""
         s = blend(self.settings, self.scene.volumes, camera.world_from_view[:3, 3])
+        size = drawn_size(self.size, s["screen.percentage"] if view_name == "final" else 100.0)
         exposure = 2.0 ** s["exposure"]
         view = pack_view(
             camera,
-            self.size,
+            size,
             self._meshes.bounds,
             exposure=exposure,
             time_s=time_s,
@@ -261,9 +263,7 @@ class Renderer:
         environment = self.scene.environment if s["sky.enabled"] else None
         sky = self._sky.update(g, environment, s["sky.intensity"])
         ambient = sky.tinted(_tint(s, "ambient_cubemap.intensity", "ambient_cubemap.tint"))
-        shadows = update_shadows(
-            g, self._shadows, self._meshes, lights, camera=camera, size=self.size
-        )
+        shadows = update_shadows(g, self._shadows, self._meshes, lights, camera=camera, size=size)
         octree: Octree | None = None
         if voxels is not None:
             light_key = (shadows.lamp_key, sky.key)
@@ -272,9 +272,9 @@ class Renderer:
             )
         if view_name in VOXEL_VIEWS and octree is not None:
             level, side = s["voxels.level"], s["voxels.side"]
-            return voxel_view(g, view, octree, self.size, view_name, level, side)
+            return voxel_view(g, view, octree, size, view_name, level, side)
 
-        gb = draw_gbuffer(g, view, self._meshes, self.size)
+        gb = draw_gbuffer(g, view, self._meshes, size)
         self._decals.draw(g, view, gb)
         if view_name in CHANNELS:
             return surface_view(g, view, gb, view_name)
@@ -282,7 +282,7 @@ class Renderer:
         if view_name in SSAO_VIEWS:
             return ssao_view(g, view, gb, s, voxel_m)
         gb = settle_surfaces(g, view, gb, s, voxel_m)
-        cells = cull_to_view(g, view, shadows, camera, self.size)
+        cells = cull_to_view(g, view, shadows, camera, size)
         if view_name in LIGHT_VIEWS:
             return light_view(g, view, gb, shadows, view_name, cells)
         diffuse_gi = specular = None
@@ -323,7 +323,7 @@ class Renderer:
         )
         if view_name == "scene_color":
             return scene_color
-        return develop(g, view, scene_color, gb, s, self._post, self._meshes)
+        return develop(g, view, scene_color, gb, s, self._post, self._meshes, self.size)
 
     @property
     def _cone_split(self) -> int:

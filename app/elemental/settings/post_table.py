@@ -58,6 +58,9 @@ POST_TABLE = (
             "empty: none", unit="file", volume=True),
     Setting("color_grading.intensity", "float", 1.0, "share of the look-up table's colours",
             lo=0, hi=1, volume=True),
+    Setting("screen.percentage", "float", 100.0,
+            "width and height at which the picture is drawn before it is enlarged",
+            unit="%", lo=25, hi=100, source="[Mittring12]"),
     Setting("fxaa.enabled", "bool", True, "edge antialiasing as the last filter",
             source="[Mittring12]"),
 )  # fmt: skip

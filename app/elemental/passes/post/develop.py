@@ -16,7 +16,7 @@ from elemental.passes.post.fxaa import fxaa
 from elemental.passes.post.history import PostHistory
 from elemental.passes.post.lens_flare import is_on, lens_flares
 from elemental.passes.post.motion_blur import motion_blur
-from elemental.passes.post.scale import downsample
+from elemental.passes.post.scale import downsample, upscale
 from elemental.passes.post.tonemap import tonemap
 from elemental.passes.scene_gpu import GpuScene
 from elemental.settings import Settings
@@ -30,11 +30,12 @@ def develop(
     settings: Settings,
     history: PostHistory,
     scene: GpuScene | None = None,
+    size: tuple[int, int] | None = None,
 ) -> TextureHandle:
     """The finished picture, (H, W) RGBA8 display codes, of radiance (H, W) RGBA16F.
 
     ``settings``: this frame's, blended or not; ``history``: the renderer's, one step a frame;
-    ``scene``: what may move in it.
+    ``scene``: what may move in it; ``size``: of the picture, if it is enlarged.
     """
     s = settings
     history.advance(view)
@@ -62,4 +63,6 @@ def develop(
     film = film_block(s, [(lut.table, share) for lut, share in graded], int(view["frame"]))
     luts = [lut for lut, _ in graded]
     image = tonemap(g, exposed, film, scene_color, bloom=light, dirt=dirt, luts=luts)
-    return fxaa(g, image) if s["fxaa.enabled"] else image
+    if s["fxaa.enabled"]:
+        image = fxaa(g, image)
+    return upscale(g, image, size or image.size)

@@ -1,7 +1,8 @@
-"""Halving a picture's size."""
+"""Smaller and larger pictures."""
 
 from __future__ import annotations
 
+from elemental.core.layout import layouts, pack
 from elemental.gpu.formats import RGBA16F
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import AnyTexture, Sampled, TextureHandle
@@ -9,6 +10,13 @@ from elemental.gpu.shaders import Raster
 
 TRIANGLE = "post/triangle.vert.glsl"
 DOWNSAMPLE = Raster(TRIANGLE, "post/downsample.frag.glsl")
+UPSCALE = Raster(TRIANGLE, "post/upscale.frag.glsl")
+
+
+def drawn_size(size: tuple[int, int], percentage: float) -> tuple[int, int]:
+    """(width, height) that a picture of ``size`` px is drawn at, by the screen percentage."""
+    width, height = (max(round(extent * percentage / 100.0), 1) for extent in size)
+    return width, height
 
 
 def half_size(size: tuple[int, ...]) -> tuple[int, int]:
@@ -26,3 +34,14 @@ def downsample(g: Graph, picture: AnyTexture, name: str = "half") -> TextureHand
         reads={"u_picture": Sampled(picture, "linear")},
     )
     return half
+
+
+def upscale(g: Graph, image: TextureHandle, size: tuple[int, ...]) -> TextureHandle:
+    """`image`, RGBA8 display codes, at ``size``: a cubic without ringing. Itself at its own."""
+    if image.size == size:
+        return image
+    shown = g.texture("upscale", size=size, like=image)
+    ratio = [drawn / wanted for drawn, wanted in zip(image.size, size, strict=True)]
+    block = pack(layouts().block("Upscale"), source_per_target=ratio)
+    g.raster(UPSCALE, color=shown, reads={"u_image": image}, params={"Upscale": block})
+    return shown
