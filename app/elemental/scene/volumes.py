@@ -52,24 +52,26 @@ class Volume:
     overrides: Mapping[str, Any] = field(default_factory=dict)
 
     @cached_property
-    def world_from_volume(self) -> Rows:
-        """Rows of the rotation."""
-        return rotation_rows(self.rotation_deg)
+    def _axes(self) -> tuple[tuple[float, Vector], ...]:
+        """(half of the size, direction in the world) of each axis."""
+        x, y, z = rotation_rows(self.rotation_deg)
+        return tuple((0.5 * size, (x[k], y[k], z[k])) for k, size in enumerate(self.size))
 
-    def distance(self, point_ws: Vec3Like) -> float:
+    def distance(self, point_ws: Vector) -> float:
         """Metres from a point to the volume, 0 inside."""
-        x, y, z = (float(p) - c for p, c in zip(point_ws, self.center, strict=True))
+        x, y, z = point_ws
+        cx, cy, cz = self.center
+        x, y, z = x - cx, y - cy, z - cz
         if self.shape == "sphere":
             return max(math.sqrt(x * x + y * y + z * z) - self.radius, 0.0)
-        rows, outside = self.world_from_volume, 0.0
-        for axis, size in enumerate(self.size):
-            local = rows[0][axis] * x + rows[1][axis] * y + rows[2][axis] * z
-            beyond = abs(local) - 0.5 * size
+        outside = 0.0
+        for half, (ax, ay, az) in self._axes:
+            beyond = abs(ax * x + ay * y + az * z) - half
             if beyond > 0.0:
                 outside += beyond * beyond
         return math.sqrt(outside)
 
-    def weight(self, eye_ws: Vec3Like) -> float:
+    def weight(self, eye_ws: Vector) -> float:
         """Share of the volume's values, 0 to 1, as seen from an eye."""
         if not self.enabled or self.blend_weight <= 0.0:
             return 0.0
@@ -105,7 +107,9 @@ def blend(base: Settings, volumes: Sequence[Volume], eye_ws: Vec3Like) -> Settin
     """
     if not volumes:
         return base
-    acting = [(v.priority, w, v) for v in volumes if v.overrides and (w := v.weight(eye_ws)) > 0.0]
+    x, y, z = eye_ws
+    eye = float(x), float(y), float(z)
+    acting = [(v.priority, w, v) for v in volumes if v.overrides and (w := v.weight(eye)) > 0.0]
     if not acting:
         return base
     acting.sort(key=_priority)
