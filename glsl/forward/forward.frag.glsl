@@ -26,8 +26,8 @@ flat in uint v_material;
 layout(location = 0) out vec4 o_radiance;
 
 vec3 shade_translucent(Surface s, vec3 n_ws, vec3 p_ws) {
-    ShadingPoint point = shading_point(p_ws, n_ws, s.albedo, s.specular_color, s.specular_power,
-                                       s.subsurface_color, s.lighting_model);
+    ShadingPoint point = seen_point(p_ws, n_ws, s.albedo, s.specular_color, s.specular_power,
+                                    s.subsurface_color, s.lighting_model);
     DirectLight direct = direct_light(point);
     vec3 radiance = s.emissive + direct.diffuse + direct.specular;
 #if GI

@@ -1,5 +1,6 @@
-// What the lighting models beside the slides' own formulas add: light through a surface, cloth, and
-// the share of light that is left for diffuse reflection. Pure functions; every direction is unit.
+// How a surface of each lighting model reflects and lets through one light: the slides' formulas,
+// light through a surface, cloth, and the share of light that is left for diffuse reflection. Pure
+// functions; every direction is unit. [Mittring12 "Shading"]
 #include "shared/gbuffer.glsl"
 #include "lib/brdf.glsl"
 
@@ -64,4 +65,62 @@ vec3 mirrored_share(uint lighting_model, vec3 specular_color, float roughness, f
 vec3 diffuse_hold(vec3 albedo, vec3 subsurface_color, vec3 mirrored) {
     vec3 left = max(1.0 - mirrored, 0.0);
     return min(left / max(albedo + subsurface_color, 1e-4), 1.0);
+}
+
+struct ShadingPoint {
+    vec3 p_ws;
+    vec3 n_ws;
+    vec3 to_eye;            // unit
+    vec3 albedo;
+    vec3 specular_color;
+    float specular_power;
+    vec3 subsurface_color;
+    uint lighting_model;    // LIGHTING_*
+    vec3 mirrored;          // mirrored_share; what it leaves is the others'
+};
+
+struct DirectLight {
+    vec3 diffuse;           // radiance
+    vec3 specular;          // radiance
+};
+
+// A point to shade: albedo and subsurface colour are held back by what it mirrors.
+ShadingPoint shading_point(vec3 p_ws, vec3 n_ws, vec3 to_eye, vec3 albedo, vec3 specular_color,
+                           float specular_power, vec3 subsurface_color, uint lighting_model) {
+    float n_o_v = clamp(dot(n_ws, to_eye), 0.0, 1.0);
+    float roughness = roughness_from_specular_power(specular_power);
+    vec3 mirrored = mirrored_share(lighting_model, specular_color, roughness, n_o_v);
+    vec3 through = lighting_model == LIGHTING_SUBSURFACE ? subsurface_color : vec3(0.0);
+    vec3 hold = diffuse_hold(albedo, through, mirrored);
+    return ShadingPoint(p_ws, n_ws, to_eye, albedo * hold, specular_color, specular_power,
+                        through * hold, lighting_model, mirrored);
+}
+
+// Radiance towards the eye of one light from the surface's own side, without its shadow.
+DirectLight reflect_sample(ShadingPoint p, vec3 to_light, vec3 irradiance, float area_angle) {
+    float n_o_l = clamp(dot(p.n_ws, to_light), 0.0, 1.0);
+    // Beyond the light's reach, or from behind, where the half vector may be none.
+    if (n_o_l <= 0.0 || irradiance == vec3(0.0)) return DirectLight(vec3(0.0), vec3(0.0));
+    vec3 h = normalize(to_light + p.to_eye);
+    DirectLight reflected;
+    reflected.diffuse = irradiance * n_o_l * p.albedo / PI;
+    if (p.lighting_model == LIGHTING_CLOTH) {
+        float roughness = roughness_from_specular_power(p.specular_power);
+        float n_o_v = clamp(dot(p.n_ws, p.to_eye), 0.0, 1.0);
+        float n_o_h = clamp(dot(p.n_ws, h), 0.0, 1.0);
+        float held = 1.0 / max(cloth_albedo(roughness, n_o_v), 1.0);
+        reflected.specular = irradiance * p.specular_color
+            * (cloth_specular(n_o_h, n_o_l, n_o_v, roughness) * held);
+        return reflected;
+    }
+    vec3 fresnel = fresnel_schlick(p.specular_color, dot(p.to_eye, h));
+    reflected.specular = irradiance * fresnel * GAUSSIAN_SPECULAR_BALANCE
+        * gaussian_specular(p.n_ws, h, n_o_l, p.specular_power, area_angle);
+    return reflected;
+}
+
+// Radiance towards the eye of one light that shines through the surface, without its shadow.
+vec3 transmit_sample(ShadingPoint p, vec3 to_light, vec3 irradiance) {
+    float share = transmitted_share(dot(p.n_ws, to_light), -dot(to_light, p.to_eye));
+    return irradiance * p.subsurface_color * (share / PI);
 }

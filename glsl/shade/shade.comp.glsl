@@ -33,8 +33,8 @@ uniform sampler2D u_specular_gi;  // radiance along the mirrored eye ray
 layout(rgba16f) uniform image2D u_scene_color;
 
 vec3 shade_surface(GBufferSurface s, vec3 p_ws, ivec2 pixel) {
-    ShadingPoint point = shading_point(p_ws, s.normal_ws, s.albedo, s.specular_color,
-                                       s.specular_power, s.subsurface_color, s.lighting_model);
+    ShadingPoint point = seen_point(p_ws, s.normal_ws, s.albedo, s.specular_color,
+                                    s.specular_power, s.subsurface_color, s.lighting_model);
     DirectLight direct = direct_light(point);
     vec3 radiance = direct.diffuse + direct.specular;
     vec3 indirect = vec3(0.0);

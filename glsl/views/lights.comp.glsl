@@ -40,8 +40,8 @@ void main() {
             texelFetch(u_gbuffer_a, pixel, 0), texelFetch(u_gbuffer_b, pixel, 0),
             texelFetch(u_gbuffer_c, pixel, 0), texelFetch(u_gbuffer_d, pixel, 0)));
         vec3 p_ws = position_ws_at((vec2(pixel) + 0.5) * u_view.viewport_px.zw, depth);
-        ShadingPoint point = shading_point(p_ws, s.normal_ws, s.albedo, s.specular_color,
-                                           s.specular_power, s.subsurface_color, s.lighting_model);
+        ShadingPoint point = seen_point(p_ws, s.normal_ws, s.albedo, s.specular_color,
+                                        s.specular_power, s.subsurface_color, s.lighting_model);
 #if SHOW_RADIANCE
         DirectLight direct = direct_light(point);
         color = s.lighting_model == LIGHTING_UNLIT ? vec3(0.0) : direct.diffuse + direct.specular;

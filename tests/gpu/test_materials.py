@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -398,3 +399,18 @@ def test_what_becomes_displaced_gets_room_and_vertices(rig: MakeRig, artist: Art
 def test_layouts_agree_about_how_many_parameters_there_are() -> None:
     material_struct = layouts().struct("Material")
     assert material_struct["parameters"].shape == (layouts().constant("MATERIAL_VECTORS"), 4)
+
+
+def test_the_page_s_example_is_a_material(rig: MakeRig, artist: Artist, device: Device) -> None:
+    page = Path(__file__).resolve().parents[2] / "docs" / "materials.md"
+    example, displacement = re.findall(r"```glsl\n(.*?)```", page.read_text("utf-8"), re.DOTALL)
+    waves = example.replace("/*\n", "/*\ndisplacement_m = 0.1\n", 1) + displacement
+    for text in (example, waves):
+        view = draws(rig, artist, text)
+        view.gpu.update(None)
+        assert view.gpu.materials.faults() == []
+        g = device.begin_frame()
+        view.gpu.deform(g)
+        g.execute()
+        assert np.isfinite(albedo(view)).all()
+        assert device.library.problems() == []

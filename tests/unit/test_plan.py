@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from elemental.gpu import gl as c
-from elemental.gpu.plan import Hazards, PlanError, Schedule, schedule
+from elemental.gpu.plan import UNORDERED, Hazards, PlanError, Schedule, schedule
 
 
 @dataclass
@@ -175,7 +175,7 @@ class Resource:
     """Hazard state of a physical resource."""
 
     def __init__(self) -> None:
-        self.written_at = self.access_at = 0
+        self.written_at = self.access_at = self.ordered_at = 0
 
 
 FETCH, IMAGE, STORAGE = (
@@ -241,24 +241,37 @@ def test_a_write_after_the_barrier_needs_a_new_one() -> None:
         assert hazards.barrier_before([(x, c.COMMAND_BARRIER, False)]) == c.COMMAND_BARRIER
 
 
+def test_unordered_writes_wait_for_readers_not_for_each_other() -> None:
+    hazards, x = Hazards(), Resource()
+    assert hazards.barrier_before([(x, STORAGE, UNORDERED)]) == 0
+    assert hazards.barrier_before([(x, STORAGE, UNORDERED)]) == 0
+    assert hazards.barrier_before([(x, STORAGE, False)]) == STORAGE
+    assert hazards.barrier_before([(x, STORAGE, UNORDERED)]) == STORAGE
+    assert hazards.barrier_before([(x, STORAGE, True)]) == STORAGE
+    assert hazards.barrier_before([(x, STORAGE, UNORDERED)]) == STORAGE
+
+
 accesses = st.tuples(
-    st.integers(0, 2), st.sampled_from([FETCH, IMAGE, STORAGE, 0x400]), st.booleans()
+    st.integers(0, 2),
+    st.sampled_from([FETCH, IMAGE, STORAGE, 0x400]),
+    st.sampled_from([0, 1, UNORDERED]),
 )
 
 
 @given(st.lists(st.lists(accesses, min_size=1, max_size=3, unique_by=lambda a: a[0]), max_size=12))
-def test_barriers_match_a_naive_model(passes: list[list[tuple[int, int, bool]]]) -> None:
+def test_barriers_match_a_naive_model(passes: list[list[tuple[int, int, int]]]) -> None:
     """Between two conflicting accesses the later one's bit is issued, and only then."""
     hazards, resources = Hazards(), [Resource() for _ in range(3)]
     issued: list[int] = []
-    done: list[list[tuple[int, int, bool]]] = []
+    done: list[list[tuple[int, int, int]]] = []
     for current in passes:
-        current = [(r, b, w and b in (IMAGE, STORAGE)) for r, b, w in current]  # noqa: PLW2901
+        current = [(r, b, w if b in (IMAGE, STORAGE) else 0) for r, b, w in current]  # noqa: PLW2901
         need = 0
         for resource, bit, write in current:
             for earlier in range(len(done)):
                 for other, _, other_write in done[earlier]:
                     conflict = other == resource and (other_write or write)
+                    conflict = bool(conflict) and not other_write == write == UNORDERED
                     if conflict and not any(bits & bit for bits in issued[earlier + 1 :]):
                         need |= bit
         got = hazards.barrier_before([(resources[r], b, w) for r, b, w in current])

@@ -145,7 +145,7 @@ class Executor:
             encoded = self._encoded[name] = name.encode()[:200]
         self.gl.glPushDebugGroup(c.DEBUG_SOURCE_APPLICATION, 0, len(encoded), encoded)
 
-    def barrier(self, accesses: Sequence[tuple[Any, int, bool]]) -> None:
+    def barrier(self, accesses: Sequence[tuple[Any, int, int]]) -> None:
         """Issue what the accesses that follow need."""
         bits = self.hazards.barrier_before(accesses)
         if bits:

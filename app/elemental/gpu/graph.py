@@ -37,6 +37,7 @@ from elemental.gpu.passes import (
     RasterPass,
     Readback,
 )
+from elemental.gpu.plan import UNORDERED
 from elemental.gpu.program import Program
 from elemental.gpu.refs import (
     AnyBuffer,
@@ -45,6 +46,7 @@ from elemental.gpu.refs import (
     ImageRef,
     Ref,
     TextureHandle,
+    Unordered,
 )
 from elemental.gpu.resources import Buffer, Texture
 from elemental.gpu.shaders import Compute, Raster
@@ -304,13 +306,16 @@ class Graph:
             (plan.reads, reads, node.reads, False),
             (plan.writes, writes, node.modifies, True),
         ):
-            for slot, ref in zip(slots, refs.values(), strict=True):
+            for slot, given in zip(slots, refs.values(), strict=True):
+                ref, access = given, int(written)
+                if type(given) is Unordered:
+                    ref, access = given.buffer, UNORDERED * access
                 for look, resource in looks(slot, ref, program):
                     index = resource.index if resource.graph is self else self._index(resource)
                     used.append(index)
                     if slot.unit >= 0:
                         bindings.append((look, index))
-                        accesses.append((index, look.barrier, written))
+                        accesses.append((index, look.barrier, access))
         for slot, values in zip(plan.params, params.values(), strict=True):
             if slot.unit >= 0:
                 raw = values.tobytes()

@@ -30,7 +30,7 @@ class Pass:
         self.modifies: list[int] = []
         self.overwrites: list[int] = []
         self.has_side_effect = False
-        self.accesses: list[tuple[int, int, bool]] = []
+        self.accesses: list[tuple[int, int, int]] = []
         """(resource, barrier bit of the use, shader write)."""
         self.bindings: list[tuple[Look, int]] = []
         self.params: list[tuple[int, int, int]] = []

@@ -212,11 +212,17 @@ def _lifetimes(
     return births, deaths
 
 
+UNORDERED = 2
+"""A shader write, as ``Access`` has it, that may overtake others of its kind."""
+
+
 class Tracked(Protocol):
-    """A physical resource with the clock of its last shader write and of its last access."""
+    """A physical resource with the clock of its last shader write, of its last access, and of its
+    last access but for unordered writes."""
 
     written_at: int
     access_at: int
+    ordered_at: int
 
 
 @dataclass(slots=True)
@@ -235,7 +241,8 @@ class Hazards:
 
     glMemoryBarrier acts on everything at once, so a resource needs a bit only where that bit was
     not issued since the resource's last shader write (read or write after write) or, before a
-    shader write, since its last access of any kind (write after read) [GL 4.3, 7.12.2].
+    shader write, since its last access of any kind (write after read) [GL 4.3, 7.12.2]. Unordered
+    writes don't wait for each other.
     """
 
     __slots__ = ("_issued", "clock")
@@ -244,12 +251,15 @@ class Hazards:
         self.clock = 1
         self._issued: dict[int, int] = {}
 
-    def barrier_before(self, accesses: Sequence[tuple[Tracked, int, bool]]) -> int:
-        """Bits to issue before a pass that makes ``accesses`` (state, bit, shader write)."""
+    def barrier_before(self, accesses: Sequence[tuple[Tracked, int, int]]) -> int:
+        """Bits to issue before a pass that makes ``accesses`` (state, bit, shader write or 0)."""
         issued = self._issued
         bits = 0
         for state, bit, shader_write in accesses:
-            since = state.access_at if shader_write else state.written_at
+            if shader_write:
+                since = state.ordered_at if shader_write == UNORDERED else state.access_at
+            else:
+                since = state.written_at
             if since and since > issued.get(bit, 0):
                 bits |= bit
         if bits:
@@ -259,12 +269,14 @@ class Hazards:
             state.access_at = now
             if shader_write:
                 state.written_at = now
+            if shader_write != UNORDERED:
+                state.ordered_at = now
         return bits
 
     def touched(self, state: Tracked) -> None:
         """Note an access outside of passes: an upload."""
         self.clock += 1
-        state.access_at = self.clock
+        state.access_at = state.ordered_at = self.clock
 
     def issued(self, bits: int) -> None:
         """Note that a barrier of ``bits`` was issued now."""

@@ -89,9 +89,19 @@ class Layer:
     level: int = 0
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Unordered:
+    """A buffer as passes write it in whatever order: atomics, or the same value by all.
+
+    Such passes don't wait for each other; all that reads it waits for them.
+    """
+
+    buffer: AnyBuffer
+
+
 ImageRef = AnyTexture | Mip | Layer
 TextureRef = ImageRef | Sampled
-Ref = TextureRef | AnyBuffer | Sequence[TextureRef]
+Ref = TextureRef | AnyBuffer | Unordered | Sequence[TextureRef]
 
 _FILTERS = {
     "nearest": (c.NEAREST, c.NEAREST),

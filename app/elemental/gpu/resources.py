@@ -29,8 +29,8 @@ class Texture(Shaped):
     """A texture of immutable storage on the device; ``release`` frees it and its views."""
 
     __slots__ = (
-        "access_at", "category", "device", "glo", "graph", "index", "serial", "target", "views",
-        "written_at",
+        "access_at", "category", "device", "glo", "graph", "index", "ordered_at", "serial",
+        "target", "views", "written_at",
     )  # fmt: skip
 
     def __init__(self, device: Device, name: str, desc: TextureDesc, category: str) -> None:
@@ -40,7 +40,7 @@ class Texture(Shaped):
         self.views: dict[tuple[int, int, int, int, bool], int] = {}
         self.graph: object = None
         self.index = -1
-        self.written_at = self.access_at = 0
+        self.written_at = self.access_at = self.ordered_at = 0
         gl = device.gl
         self.glo = gl.generate("Textures")
         device.bind_for_update(self.target, self.glo)
@@ -165,7 +165,7 @@ class Buffer:
 
     __slots__ = (
         "access_at", "category", "device", "glo", "graph", "index", "mgl", "name", "nbytes",
-        "serial", "written_at",
+        "ordered_at", "serial", "written_at",
     )  # fmt: skip
 
     def __init__(
@@ -181,7 +181,7 @@ class Buffer:
         self.serial = next(_serial)
         self.graph: object = None
         self.index = -1
-        self.written_at = self.access_at = 0
+        self.written_at = self.access_at = self.ordered_at = 0
         given: dict[str, Any] = {"reserve" if isinstance(contents, int) else "data": contents}
         self.mgl: moderngl.Buffer = device.ctx.buffer(**given, dynamic=dynamic)
         self.glo: int = self.mgl.glo

@@ -10,7 +10,7 @@ import numpy as np
 from elemental.core.layout import Block, layouts, pack
 from elemental.gpu.device import Device
 from elemental.gpu.graph import Graph
-from elemental.gpu.refs import Ref
+from elemental.gpu.refs import Ref, Unordered
 from elemental.gpu.shaders import Define, Raster
 from elemental.passes import material_pack, material_snippets
 from elemental.passes.material_snippets import MaterialSnippet
@@ -91,7 +91,7 @@ class MaterialTable:
     def writes(self, batches: Sequence[Batch]) -> dict[str, Ref]:
         """What the programs of batches of one definition write beside their targets."""
         fails = bool(batches) and batches[0].definition.may_fail
-        return {"MaterialFaults": self._faults} if fails else {}
+        return {"MaterialFaults": Unordered(self._faults)} if fails else {}
 
     def params(self) -> dict[str, Block]:
         """The uniform blocks of lib/material.glsl."""
