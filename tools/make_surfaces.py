@@ -142,7 +142,7 @@ def files() -> dict[str, bytes]:
     ]  # fmt: skip
     glasses = [
         ("clear", ball(), (-1.05, 0.8, -0.3), glass("Clear", thickness=2 * BALL_RADIUS_M)),
-        ("frosted", ball(), (-0.15, 0.8, 0.1), glass("Frosted", 0.45, thickness=0.3)),
+        ("frosted", ball(), (-0.15, 0.8, 0.1), glass("Frosted", 0.35, thickness=2 * BALL_RADIUS_M)),
         ("bottle", bottle(), (0.8, 0.5, -0.25),
          glass("Amber", 0.03, thickness=0.03, attenuation=amber, double_sided=True)),
         ("pane", pane(), (1.65, 0.5, 0.5), glass("Pane", color=(0.75, 0.95, 0.88))),

@@ -319,7 +319,14 @@ class Renderer:
             specular_gi=specular.radiance if specular is not None else None,
         )
         scene_color = draw_translucent(
-            g, view, gb, self._meshes, shadows, sky=ambient, diffuse_gi=diffuse_gi
+            g,
+            view,
+            gb,
+            self._meshes,
+            shadows,
+            sky=ambient,
+            cells=cells,
+            gathered=None if octree is None else (octree, self._area_block),
         )
         if view_name == "scene_color":
             return scene_color

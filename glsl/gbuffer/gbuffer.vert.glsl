@@ -17,6 +17,7 @@ out vec2 v_uv0;
 out vec2 v_uv1;
 out vec4 v_color;
 flat out uint v_material;
+flat out float v_scale;  // world lengths by local ones
 
 invariant gl_Position;
 
@@ -28,6 +29,7 @@ void main() {
     v_uv1 = a_uv1;
     v_color = a_color;
     v_material = instances[a_instance].material;
+    v_scale = length(world_from_local[0].xyz);
     vec4 position_ws = world_from_local * vec4(a_position, 1.0);
     v_position_ws = position_ws.xyz;
     gl_Position = u_view.clip_from_world * position_ws;

@@ -6,6 +6,7 @@
 // that may have a texture; the fetches of the others are left out. MATERIAL_FAULTS 1: a surface that
 // is no number is shown as the fallback, and told in the buffer MaterialFaults.
 #include "shared/material.glsl"
+#include "lib/refraction.glsl"
 #include "lib/surface.glsl"
 
 #ifndef MATERIAL_TEXTURES
@@ -68,7 +69,7 @@ vec4 base_color_of(MaterialInput m) {
 }
 
 // glTF's material: metallic-roughness to diffuse and specular colour as in glTF 2.0 appendix B
-// ("Material Structure").
+// ("Material Structure"), and what KHR_materials_transmission, _ior and _volume add.
 Surface standard_surface(MaterialInput m) {
     vec4 base_color = base_color_of(m);
     float metallic = materials[m.material].metallic;
@@ -94,9 +95,16 @@ Surface standard_surface(MaterialInput m) {
 #if (MATERIAL_TEXTURES & 16) != 0
     s.emissive *= material_texel(u_emissive_texture, m.material, SLOT_EMISSIVE, m.uv0, m.uv1).rgb;
 #endif
-    s.albedo = base_color.rgb * (1.0 - metallic);
+    float transmission = materials[m.material].transmission;
+    vec3 entering = base_color.rgb * (1.0 - metallic);
+    s.albedo = entering * (1.0 - transmission);
+    s.transmission = entering * transmission;
+    s.ior = materials[m.material].ior;
+    s.thickness = materials[m.material].thickness;
+    s.absorption = absorption_of(materials[m.material].attenuation_color,
+                                 materials[m.material].attenuation_distance);
     s.opacity = base_color.a;
-    s.specular_color = mix(DIELECTRIC_SPECULAR, base_color.rgb, metallic);
+    s.specular_color = mix(vec3(reflectance_of_ior(s.ior)), base_color.rgb, metallic);
     return s;
 }
 

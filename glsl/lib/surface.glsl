@@ -24,6 +24,10 @@ struct Surface {
     vec3 normal_ts;         // unit, tangent space: what a normal map says
     vec3 height_gradient;   // world space: how a height over the surface changes, m a m
     vec3 subsurface_color;  // share of the light that leaves elsewhere: back-lit, around the edge
+    vec3 transmission;      // share of the light that passes through a translucent surface
+    vec3 absorption;        // of the body behind it, 1 / m
+    float thickness;        // of that body, in the mesh's own units; 0: a thin wall
+    float ior;              // index of refraction
     float decal_mask;       // share of a decal that the surface takes on
     uint lighting_model;    // LIGHTING_*
 };
@@ -44,6 +48,10 @@ Surface plain_surface() {
     s.normal_ts = vec3(0.0, 0.0, 1.0);
     s.height_gradient = vec3(0.0);
     s.subsurface_color = vec3(0.0);
+    s.transmission = vec3(0.0);
+    s.absorption = vec3(0.0);
+    s.thickness = 0.0;
+    s.ior = 1.5;
     s.decal_mask = 1.0;
     s.lighting_model = LIGHTING_DEFAULT;
     return s;

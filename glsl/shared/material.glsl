@@ -26,6 +26,12 @@ struct Material {
     uint texture_mask;  // bit SLOT_*: the slot has a texture
     uint uv_set_mask;   // bit SLOT_*: the slot reads the second uv set
     float emission_max; // radiance beyond is cut: voxels have a range
+    vec3 attenuation_color;      // of the light that passes attenuation_distance of the body
+    float attenuation_distance;  // m; 0: nothing is absorbed
+    float transmission; // share of the light that enters and passes through
+    float ior;          // index of refraction
+    float thickness;    // of the body behind the surface, in local units; 0: a thin wall
+    float reserved0;
     vec4 uv_row_u[5];   // per slot: u = dot(row.xyz, vec3(uv, 1)), KHR_texture_transform
     vec4 uv_row_v[5];
     vec4 parameters[8]; // where each is, the material's definition says

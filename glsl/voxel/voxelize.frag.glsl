@@ -26,7 +26,10 @@ void main() {
     bool masked = (materials[v_material].flags & MATERIAL_MASK) != 0u;
     if (masked && surface.opacity < materials[v_material].alpha_cutoff) discard;
     bool blended = (materials[v_material].flags & MATERIAL_BLEND) != 0u;
-    float opacity = blended ? surface.opacity : 1.0;
+    vec3 passes = surface.transmission;
+    float hidden = 1.0 - max(passes.r, max(passes.g, passes.b));
+    float opacity = blended ? surface.opacity * hidden : 1.0;
+    if (opacity < 0.5 / 255.0) discard;  // glass: a voxel could not tell it from nothing
 
     // The two raster axes are exact by construction; the third is rounded to the nearest point.
     vec3 nearest = floor(v_point + 0.5);

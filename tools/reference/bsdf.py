@@ -10,6 +10,9 @@ their reflectance, which its importance sampling handles without bias:
   - `roughconductor`, GGX, eta 1.5, k 0: the Fresnel reflectance of glass (0.04 at 0 degrees)
   - `roughconductor`, GGX, no Fresnel term, 2·base: metals without their edge brightening
 
+Glass is a `thindielectric`, of a body a `dielectric` or `roughdielectric`; bodies absorb nothing
+and transmit wholly, tinted by the base colour's factor.
+
 alpha = roughness^2. Above them `normalmap`, `mask` (alpha modes) and `twosided`. Differences left:
 vertex colours multiply constants only; one uv set a material; our occlusion textures, which darken
 ambient light only, have no counterpart in a path tracer.
@@ -102,6 +105,8 @@ class MaterialConverter:
         maps = self._maps(m, vertex_color)
         if m.unlit:
             return {"type": "diffuse", "reflectance": {"type": "rgb", "value": 0.0}}
+        if m.transmits:
+            return _glass(m)
         entry = self._lobes(maps)
         if m.normal_texture is not None:
             entry = {
@@ -166,6 +171,17 @@ class MaterialConverter:
         if m.emissive_texture is not None:
             glow = glow * srgb_to_linear(self._pixels(m.emissive_texture)[..., :3])
         return glow, m.emissive_texture
+
+
+def _glass(m: Material) -> Entry:
+    entry: Entry = {
+        "type": "dielectric" if m.thickness > 0.0 else "thindielectric",
+        "int_ior": m.ior,
+        "specular_transmittance": {"type": "rgb", "value": m.base_color[:3].tolist()},
+    }
+    if m.roughness > 0.0 and m.thickness > 0.0:
+        entry |= {"type": "roughdielectric", "distribution": "ggx", "alpha": m.roughness**2}
+    return entry
 
 
 def _slots(m: Material) -> list[TextureSlot]:

@@ -68,6 +68,11 @@ def pack_materials(scene: Scene) -> npt.NDArray[Any]:
         uv_row_u=rows[:, :, 0],
         uv_row_v=rows[:, :, 1],
         emission_max=column("emission_max"),
+        attenuation_color=column("attenuation_color"),
+        attenuation_distance=column("attenuation_distance"),
+        transmission=column("transmission"),
+        ior=column("ior"),
+        thickness=column("thickness"),
         parameters=[pack_parameters(material) for material in materials],
     )  # fmt: skip
 

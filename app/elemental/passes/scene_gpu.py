@@ -234,14 +234,27 @@ class GpuScene:
             if batch.alpha_mode in alpha_modes and batch.dynamic in wanted
         ]
 
-    def back_to_front(self, eye: Array) -> list[Batch]:
-        """The blended batches, one an instance, by the distance of its centre to eye (3,)."""
-        centers = self._culling.centers
+    def back_to_front(self, eye: Array, clip_from_world: Array) -> list[Batch]:
+        """The blended batches in sight, one an instance, by the distance of its centre to eye (3,).
 
-        def distance(batch: Batch) -> float:
-            return float(np.linalg.norm(centers[batch.instance] - eye))
+        clip_from_world (4, 4): the viewer's.
+        """
+        batches = self.batches(BLEND)
+        if not batches:
+            return []
+        seen = self._culling.visible(clip_from_world)
+        distance = np.linalg.norm(self._culling.centers - eye, axis=1)
+        shown = [batch for batch in batches if seen[batch.instance]]
+        return sorted(shown, key=lambda batch: float(distance[batch.instance]), reverse=True)
 
-        return sorted(self.batches(BLEND), key=distance, reverse=True)
+    def box(self, instance: int) -> tuple[Array, Array]:
+        """World-space (low, high), each (3,) m, of an instance now."""
+        return self._table.low[instance], self._table.high[instance]
+
+    def transmits(self, batch: Batch) -> bool:
+        """Whether what is behind a blended batch is seen through it, bent and tinted."""
+        mesh = self._scene.meshes[self._scene.instances[batch.instance].mesh]
+        return self._scene.materials[mesh.material].transmits
 
     def draw(
         self,

@@ -27,9 +27,9 @@ STANDARD = "standard"
 UNLIT = "unlit"
 VECTORS_MAX = 8
 """vec4s of parameters a material: MATERIAL_VECTORS of glsl/shared/material.glsl."""
-TEXTURES_MAX = 4
-"""Textures of its own: a stage has 16 units, of which glTF's slots, shadow maps and indirect light
-take up to 12."""
+TEXTURES_MAX = 3
+"""Textures of its own: a stage has 16 units, of which glTF's slots, lights, indirect light and
+glass take up to 13."""
 DISPLACEMENT_MAX_M = 1e6
 
 SHARED: dict[str, ParameterKind] = {
@@ -39,6 +39,11 @@ SHARED: dict[str, ParameterKind] = {
     "emissive": "color",
     "normal_scale": "float",
     "occlusion_strength": "float",
+    "transmission": "float",
+    "ior": "float",
+    "thickness": "float",
+    "attenuation_color": "color",
+    "attenuation_distance": "float",
     "base_color_texture": "texture",
     "metallic_roughness_texture": "texture",
     "normal_texture": "texture",

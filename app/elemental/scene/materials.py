@@ -48,6 +48,10 @@ class Material:
     strength included. Textures multiply their factors: base colour and emissive textures are sRGB
     encoded, the others linear (metallic in B, roughness in G, occlusion in R).
 
+    Light passes a share of `transmission` through what is blended, `thickness` (local units; 0 for
+    a thin wall) of a body of index of refraction `ior`, of which `attenuation_color` (3,) is left
+    after `attenuation_distance` m (0: of all ways).
+
     `values` are those of the definition's own parameters that are not at their default, `textures`
     its own textures that are not plain.
     """
@@ -67,6 +71,11 @@ class Material:
     alpha_mode: AlphaMode = "opaque"
     alpha_cutoff: float = 0.5
     double_sided: bool = False
+    transmission: float = 0.0
+    ior: float = 1.5
+    thickness: float = 0.0
+    attenuation_color: FloatArray = field(default_factory=lambda: np.ones(3, np.float32))
+    attenuation_distance: float = 0.0
     definition: MaterialDefinition = field(default_factory=lambda: builtin(STANDARD))
     values: dict[str, ParameterValue] = field(default_factory=dict)
     textures: dict[str, TextureSlot] = field(default_factory=dict)
@@ -80,6 +89,11 @@ class Material:
     def unlit(self) -> bool:
         """Whether it shows its base colour, whatever the light (KHR_materials_unlit)."""
         return self.definition.is_unlit
+
+    @property
+    def transmits(self) -> bool:
+        """Whether what is behind it is seen through it, bent and tinted."""
+        return self.alpha_mode == "blend" and self.transmission > 0.0
 
     @property
     def emission_max(self) -> float:
@@ -126,6 +140,8 @@ class Material:
             return replace(self, values={**self.values, name: checked})
         held = np.array(checked, np.float32) if isinstance(checked, tuple) else checked
         changed: dict[str, object] = {name: held}
+        if name == "transmission" and checked and self.alpha_mode == "opaque":
+            changed["alpha_mode"] = "blend"
         return replace(self, **changed)  # type: ignore[arg-type]  # the names are its fields'
 
     def with_texture(self, name: str, slot: TextureSlot) -> Material:

@@ -150,8 +150,8 @@ def test_too_many_parameters_are_refused(tmp_path: Path) -> None:
     vectors = "\n".join(f'v{k} = {{ type = "rgba", default = [0, 0, 0, 0] }}' for k in range(9))
     with pytest.raises(InputError, match="take more than 32 numbers"):
         read_definition(write(tmp_path, f"/*\n[parameters]\n{vectors}\n*/"))
-    images = "\n".join(f't{k} = {{ type = "texture", default = "white" }}' for k in range(5))
-    with pytest.raises(InputError, match="more than 4 textures"):
+    images = "\n".join(f't{k} = {{ type = "texture", default = "white" }}' for k in range(4))
+    with pytest.raises(InputError, match="more than 3 textures"):
         read_definition(write(tmp_path, f"/*\n[parameters]\n{images}\n*/"))
 
 

@@ -200,17 +200,54 @@ def test_unused_images_are_not_read(tmp_path: Path) -> None:
     assert load(builder, tmp_path)[0].textures == []
 
 
-def test_transmission_is_blended_with_a_warning(tmp_path: Path) -> None:
+GLASS = ("KHR_materials_transmission", "KHR_materials_ior", "KHR_materials_volume")
+
+
+def glass(tmp_path: Path, *tables: dict[str, Any]) -> tuple[Scene, Material]:
+    """A material with the tables of GLASS."""
     builder = GltfBuilder()
-    name = "KHR_materials_transmission"
-    builder.extend(name)
-    builder.material(extensions={name: {"transmissionFactor": 0.75}})
-    builder.material(extensions={name: {"transmissionFactor": 0.0}})
-    scene, glass = load(builder, tmp_path)
-    assert (glass.alpha_mode, float(glass.base_color[3])) == ("blend", 0.25)
-    assert scene.materials[1].alpha_mode == "opaque"
-    assert len(scene.warnings) == 1
-    assert f"materials[0].extensions.{name}" in scene.warnings[0]
+    for name in GLASS:
+        builder.extend(name, required=True)
+    builder.material(extensions=dict(zip(GLASS, tables, strict=False)))
+    return load(builder, tmp_path)
+
+
+def test_transmission_ior_and_volume_are_read(tmp_path: Path) -> None:
+    """SH-06: glass as the extensions state it."""
+    volume = {
+        "thicknessFactor": 0.2,
+        "attenuationDistance": 0.5,
+        "attenuationColor": [0.9, 0.5, 0.1],
+    }
+    scene, material = glass(tmp_path, {"transmissionFactor": 0.75}, {"ior": 1.33}, volume)
+    assert scene.warnings == []
+    assert (material.alpha_mode, material.transmission, material.ior) == ("blend", 0.75, 1.33)
+    assert material.transmits
+    assert float(material.base_color[3]) == 1.0
+    assert (material.thickness, material.attenuation_distance) == (0.2, 0.5)
+    np.testing.assert_allclose(material.attenuation_color, [0.9, 0.5, 0.1])
+
+
+def test_glass_has_the_defaults_of_the_extensions(tmp_path: Path) -> None:
+    _, material = glass(tmp_path, {"transmissionFactor": 1.0}, {}, {})
+    assert (material.ior, material.thickness, material.attenuation_distance) == (1.5, 0.0, 0.0)
+    np.testing.assert_array_equal(material.attenuation_color, 1.0)
+    _, opaque = glass(tmp_path, {"transmissionFactor": 0.0})
+    assert opaque.alpha_mode == "opaque"
+
+
+def test_textures_of_glass_are_left_out_with_a_warning(tmp_path: Path) -> None:
+    table = {"transmissionFactor": 1.0, "transmissionTexture": {"index": 0}}
+    scene, material = glass(tmp_path, table, {"ior": 9.0}, {"thicknessTexture": {"index": 0}})
+    assert [warning.count("is left out") for warning in scene.warnings] == [1, 1]
+    assert material.ior == 3.0
+
+
+def test_a_material_that_is_made_glass_is_blended() -> None:
+    made = Material("wall").with_value("transmission", 0.5)
+    assert made.transmits
+    assert not made.with_value("transmission", 0.0).transmits
+    assert Material("wall").with_value("transmission", 0.0).alpha_mode == "opaque"
 
 
 def test_factors_out_of_range_are_clamped_with_a_warning(tmp_path: Path) -> None:

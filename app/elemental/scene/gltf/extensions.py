@@ -10,13 +10,16 @@ SUPPORTED = frozenset({
     "KHR_draco_mesh_compression",
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_transmission",
     "KHR_materials_unlit",
+    "KHR_materials_volume",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
 })  # fmt: skip
 
 WARNED_WHERE_USED = frozenset({
-    "KHR_animation_pointer", "KHR_materials_transmission", "KHR_texture_basisu",
+    "KHR_animation_pointer", "KHR_texture_basisu",
 })  # fmt: skip
 """Partly honoured; the animation, material or image that uses them gives the warning."""
 

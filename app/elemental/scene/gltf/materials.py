@@ -15,8 +15,10 @@ ALPHA_MODES: dict[str, AlphaMode] = {"OPAQUE": "opaque", "MASK": "mask", "BLEND"
 EMISSIVE_STRENGTH = "KHR_materials_emissive_strength"
 UNLIT = "KHR_materials_unlit"
 TRANSMISSION = "KHR_materials_transmission"
-LEAST_GLASS_OPACITY = 0.1
-"""Opacity of a fully transmissive surface: enough to see that it is there [inferred]."""
+IOR = "KHR_materials_ior"
+VOLUME = "KHR_materials_volume"
+LARGEST_IOR = 3.0
+"""Of what light enters at all: diamond has 2.4."""
 
 
 def read_materials(document: Document, textures: Textures) -> list[Material]:
@@ -52,6 +54,11 @@ def _read_material(field: Field, index: int, textures: Textures) -> Material:
     transmission = field.extension(TRANSMISSION)
     if transmission is not None:
         _apply_transmission(material, transmission)
+    ior, volume = field.extension(IOR), field.extension(VOLUME)
+    if ior is not None:
+        material.ior = min(max(ior.number_or("ior", 1.5, 0.0), 1.0), LARGEST_IOR)
+    if volume is not None:
+        _apply_volume(material, volume)
     return material
 
 
@@ -77,10 +84,25 @@ def _emissive(field: Field) -> FloatArray:
 
 
 def _apply_transmission(material: Material, transmission: Field) -> None:
-    """Thin glass as a blended surface: what is transmitted becomes transparency."""
+    """Glass: what is behind it is seen through it."""
     factor = transmission.clamped_or("transmissionFactor", 0.0, 0.0, 1.0)
+    _leave_out(transmission, "transmissionTexture")
     if factor == 0.0:
         return
-    transmission.warn("is drawn as a blended surface, without refraction or tint")
     material.alpha_mode = "blend"
-    material.base_color[3] *= max(1.0 - factor, LEAST_GLASS_OPACITY)
+    material.transmission = factor
+
+
+def _apply_volume(material: Material, volume: Field) -> None:
+    """The body behind the surface, and what it absorbs."""
+    material.thickness = volume.number_or("thicknessFactor", 0.0, 0.0)
+    _leave_out(volume, "thicknessTexture")
+    material.attenuation_distance = volume.number_or("attenuationDistance", 0.0, 0.0)
+    color = volume.find("attenuationColor")
+    if color is not None:
+        material.attenuation_color = np.clip(color.numbers(3, 0.0), 0.0, 1.0)
+
+
+def _leave_out(extension: Field, texture: str) -> None:
+    if extension.find(texture) is not None:
+        extension.warn(f"its {texture} is left out; the factor counts everywhere")
