@@ -23,6 +23,7 @@ from elemental.passes.cone_trace.diffuse import combine_diffuse, trace_diffuse
 from elemental.passes.cone_trace.interleave import SUB_IMAGES
 from elemental.passes.cone_trace.specular import SpecularCounters, trace_specular
 from elemental.passes.cone_trace.steps import STEP_VIEWS, step_view
+from elemental.passes.cone_trace.through import light_from_behind
 from elemental.passes.decal import Decals
 from elemental.passes.forward import draw_translucent
 from elemental.passes.gbuffer import GBuffer, draw_gbuffer
@@ -318,6 +319,8 @@ class Renderer:
             diffuse_gi=diffuse_gi,
             specular_gi=specular.radiance if specular is not None else None,
         )
+        if octree is not None and diffuse_gi is not None and self._meshes.materials.transmit:
+            light_from_behind(g, view, gb, octree, ambient, diffuse_gi)
         scene_color = draw_translucent(
             g,
             view,

@@ -139,4 +139,25 @@ def test_a_ball_in_a_white_furnace_is_white_at_most(
     radiance, hit = furnace(device, world)
     assert hit.sum() > 500
     assert np.percentile(radiance[hit], 99) <= 1.02
-    assert radiance[hit].mean() > (0.8 if name == "cloth" else 0.9)
+    # Of what a solid ball would let through from behind, nothing arrives.
+    assert radiance[hit].mean() > {"cloth": 0.8, "subsurface": 0.7}.get(name, 0.9)
+
+
+def test_indirect_light_shines_through(device: Device) -> None:
+    """A black leaf over a wide glowing floor: half of its subsurface colour is lit by the floor."""
+    glow = of("standard", base_color=vector(0, 0, 0, 1), emissive=vector(1, 1, 1))
+    world = scene(
+        (mesh(quad(1.0), 0), at(0, 0.6, 0)),
+        (mesh(quad(8.0), 1), IDENTITY),
+        materials=[leaf(), glow],
+    )
+    seen = {}
+    for through in (THROUGH, 0.0):
+        world.materials[0] = leaf().with_value("subsurface", [through] * 3)
+        settings = Settings().replace({"gi.resolution": 128, "gi.area_lights": False})
+        renderer = Renderer(device, world, settings, (48, 32))
+        shown = renderer.render(ABOVE, 0.0, 0, "scene_color")
+        seen[through] = float(np.median(renderer.read(shown)[13:19, 20:28, 0]))
+        renderer.release()
+    assert seen[0.0] < 0.02
+    assert seen[THROUGH] == pytest.approx(0.5 * THROUGH, rel=0.15)

@@ -84,6 +84,11 @@ class MaterialTable:
             self.set(index, self._scene.materials[index])
         return passing, edited
 
+    @property
+    def transmit(self) -> bool:
+        """Whether light may shine through any of them."""
+        return any(material.definition.transmits for material in self._scene.materials)
+
     def reads(self) -> dict[str, Ref]:
         """What lib/material.glsl reads, but for textures."""
         return {"Materials": self.rows}

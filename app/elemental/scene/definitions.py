@@ -31,6 +31,7 @@ TEXTURES_MAX = 3
 """Textures of its own: a stage has 16 units, of which glTF's slots, lights, indirect light and
 glass take up to 13."""
 DISPLACEMENT_MAX_M = 1e6
+SUBSURFACE = "LIGHTING_SUBSURFACE"
 
 SHARED: dict[str, ParameterKind] = {
     "base_color": "rgba",
@@ -70,6 +71,8 @@ class MaterialDefinition:
     emits: tuple[str, ...] = ()
     animated: bool = False
     displacement_m: float = 0.0
+    transmits: bool = False
+    """Whether its code names the subsurface lighting model."""
 
     @property
     def key(self) -> str:
@@ -201,6 +204,7 @@ def read_definition(path: Path) -> MaterialDefinition:
         emits=tuple(told["emits"]),
         animated=told["animated"],
         displacement_m=float(told["displacement_m"]),
+        transmits=SUBSURFACE in text,
     )
     _check(definition)
     return definition
