@@ -15,6 +15,7 @@ from elemental.core.images import read_environment
 from elemental.scene.gltf import load_gltf
 from elemental.scene.gltf.animations import EVERY
 from elemental.scene.ies import read_ies
+from elemental.scene.light_changes import change_lights
 from elemental.scene.model import (
     Camera,
     CameraPath,
@@ -67,6 +68,7 @@ def load_scene_file(path: Path, animation: str | None = None) -> Scene:
         node = movers.node_at("light", light.name, light.position)
         light.node = builder.node(node, _light_turn(light)) if node >= 0 else -1
     _place_models(scene, file, wanted, builder, movers)
+    change_lights(scene, file.light_changes, len(file.lights))
     dress(scene, file.materials)
     stick(scene, file.decals)
     movers.check()

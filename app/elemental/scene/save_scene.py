@@ -9,6 +9,8 @@ from __future__ import annotations
 import os
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +20,10 @@ from tomlkit.exceptions import TOMLKitError
 from elemental.core.errors import InputError
 from elemental.core.files import atomic_file, read_file
 from elemental.scene import toml_edit
+from elemental.scene.lights import Light
 from elemental.scene.load import GLTF_SUFFIXES, SCENE_FILE_SUFFIX
+from elemental.scene.materials import Material
+from elemental.scene.save_parts import put_lights, put_materials
 from elemental.scene.scene_file import flat_settings, parse_scene_file
 from elemental.scene.volume_save import with_volumes
 from elemental.scene.volumes import Volume
@@ -28,28 +33,54 @@ SETTINGS = "settings"
 _Assign = Callable[[Any, str, str, Any], None]
 
 
-def save_scene(
-    opened: Path,
-    target: Path,
-    settings: Mapping[str, Any],
-    volumes: Sequence[Volume] | None = None,
-) -> None:
-    """Write the scene of ``opened`` to the scene file ``target`` with ``settings`` assigned.
+@dataclass(frozen=True)
+class Changes:
+    """What of a scene is not as in its file; lights and materials as (before, after)."""
+
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    """Flat keys; others stay as they are."""
+    volumes: Sequence[Volume] | None = None
+    lights: tuple[Sequence[Light], Sequence[Light]] | None = None
+    materials: tuple[Sequence[Material], Sequence[Material]] | None = None
+
+
+def save_scene(opened: Path, target: Path, changes: Changes) -> None:
+    """Write the scene of ``opened`` to the scene file ``target`` with ``changes``.
 
     ``opened`` is a scene file, which is copied but for the changes, or a glTF file, which the new
-    file names as its model. ``settings`` are flat keys; others stay as they are, and so do the
-    volumes unless given. Raises InputError for a target that is no .toml file or can't be written.
+    file names as its model. Raises InputError for a target that is no .toml file or can't be
+    written, and for changes that a scene file can't hold.
     """
     if target.suffix.lower() != SCENE_FILE_SUFFIX:
         raise InputError(target, "", f"a scene is saved as {SCENE_FILE_SUFFIX}")
     text = _copied(opened, target)
-    if settings:
-        text = _with_settings(text, settings, target)
-    if volumes is not None:
-        text = with_volumes(text, volumes, target)
+    if changes.settings:
+        text = _with_settings(text, changes.settings, target)
+    if changes.lights is not None:
+        text = _edited(text, partial(_lights, *changes.lights), target, "lights")
+    if changes.materials is not None:
+        text = _edited(text, partial(_materials, *changes.materials), target, "materials")
+    if changes.volumes is not None:
+        text = with_volumes(text, changes.volumes, target)
     parse_scene_file(text, target)
     with atomic_file(target.resolve()) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="")
+
+
+def _lights(before: Sequence[Light], after: Sequence[Light], document: Any) -> None:
+    put_lights(document, before, after)
+
+
+def _materials(before: Sequence[Material], after: Sequence[Material], document: Any) -> None:
+    put_materials(document, before, after)
+
+
+def _edited(text: str, edit: Callable[[Any], None], target: Path, section: str) -> str:
+    edited = toml_edit.edited(text, edit)
+    if edited is None:
+        reason = "can't be changed in this file's layout, or are in no file"
+        raise InputError(target, section, reason)
+    return edited
 
 
 def _copied(opened: Path, target: Path) -> str:

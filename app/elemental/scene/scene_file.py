@@ -16,7 +16,7 @@ from elemental.core.files import read_file
 from elemental.scene.tables.base import Name, Table
 from elemental.scene.tables.cameras import CameraTable, PathTable
 from elemental.scene.tables.decals import DecalTable
-from elemental.scene.tables.lights import EnvironmentTable, LightTable
+from elemental.scene.tables.lights import EnvironmentTable, LightChangeTable, LightTable
 from elemental.scene.tables.materials import MaterialTable
 from elemental.scene.tables.models import ModelTable
 from elemental.scene.tables.motions import MotionTable
@@ -31,6 +31,7 @@ class SceneFile(Table):
     exposure_ev: Annotated[float, Field(ge=-32.0, le=32.0)] | None = None
     models: Annotated[list[ModelTable], Field(min_length=1)]
     lights: list[LightTable] = []
+    light_changes: list[LightChangeTable] = []
     materials: list[MaterialTable] = []
     motions: list[MotionTable] = []
     environment: EnvironmentTable | None = None

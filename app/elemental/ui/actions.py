@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,7 @@ from elemental.ui import editor
 from elemental.ui.panel import buffers
 from elemental.ui.panel.file_dialog import FileDialog
 from elemental.ui.panel.scene import Selection
+from elemental.ui.sequence_job import SequenceJob, staged
 
 if TYPE_CHECKING:
     from elemental.ui.desk import Desk
@@ -44,6 +46,10 @@ def _act_on_picture(desk: Desk, verb: str, word: str, index: int, shift: bool) -
             desk.fly.jump(desk.stage.camera)
         case "screenshot":
             _screenshot(desk)
+        case "sequence.start":
+            _start_sequence(desk)
+        case "sequence.stop" if desk.job is not None:
+            desk.job.stop()
         case "reload":
             desk.reload()
         case "view.next":
@@ -142,10 +148,37 @@ def _screenshot(desk: Desk) -> None:
         desk.say(f"wrote {path}")
 
 
+def _start_sequence(desk: Desk) -> None:
+    camera = None if desk.rides else desk.camera
+    stage = staged(desk.stage, desk.document.state.settings, camera)
+    words = replace(desk.pages.sequence, view=desk.view)
+    try:
+        desk.job = SequenceJob(desk.device, stage, words)
+    except InputError as error:
+        desk.say(str(error), "error")
+
+
+def advance_job(desk: Desk, job: SequenceJob) -> None:
+    """Make one more frame of a sequence; tell when it is over."""
+    if job.is_over:
+        return
+    try:
+        job.advance()
+    except InputError as error:
+        desk.say(str(error), "error")
+        return
+    if job.is_over:
+        desk.say(f"{job.done} frames in {job.folder.resolve()}, {job.rendered} of them new")
+
+
 def choose(desk: Desk, selection: Selection) -> None:
     """Show something of the scene where it can be changed; go to a camera."""
     desk.pages.selection = selection
     kind, index = selection
+    if kind == "volume":
+        desk.pages.volumes.chosen = index
+    elif kind in ("material", "light"):
+        setattr(desk.pages, kind, index)
     if kind == "camera":
         _pick_camera(desk, index)
     elif PAGE_OF.get(kind) in [page.name for page in desk.workspace.pages]:

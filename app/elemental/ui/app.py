@@ -127,7 +127,7 @@ class App:
             desk.act(action, index, shift)
         if not desk.gui.wants_keys:
             self._fly(frame_s)
-        if not desk.gui.wants_mouse:
+        if not desk.wants_mouse:
             desk.rides = desk.rides and not any(events.drag_px)
             desk.fly.look(*events.drag_px)
             desk.fly.scroll(events.scroll)

@@ -17,6 +17,7 @@ from elemental.core.errors import InputError
 from elemental.frame import VIEWS, Frame, Renderer
 from elemental.gpu.device import Device
 from elemental.gpu.resources import Texture
+from elemental.scene.model import Camera
 from elemental.session import Stage, Viewpoint, set_stage
 from elemental.ui import actions, theme
 from elemental.ui.averages import Averages
@@ -24,14 +25,16 @@ from elemental.ui.clock import SceneClock
 from elemental.ui.editor import Applied, document_of, reopening_words
 from elemental.ui.fly_camera import FlyCamera
 from elemental.ui.gui import Gui
+from elemental.ui.in_view import begin_gizmo, gizmo_has_mouse
 from elemental.ui.log import Kind, Log
 from elemental.ui.observers import Observers
 from elemental.ui.pages import PageState, menu_of, overlays, pages_of
 from elemental.ui.panel.file_dialog import FileDialog
 from elemental.ui.preferences import Preferences
 from elemental.ui.present import present
+from elemental.ui.sequence_job import SequenceJob
 from elemental.ui.widgets import Rect, Widgets
-from elemental.ui.workspace import SETTLING_FRAMES, Workspace
+from elemental.ui.workspace import Workspace
 
 if TYPE_CHECKING:
     from elemental.remote.server import Remote
@@ -92,14 +95,19 @@ class Desk:
         self.window_acts: Callable[[str], None] = lambda _action: None
         """Does what only a window can."""
         self.remote: Remote | None = None
+        self.job: SequenceJob | None = None
+        """The frame sequence that is being rendered, or was last."""
         self._asked: list[str] = []
+        self.place: Rect = (0.0, 0.0, *size)
+        """Of the picture on the window, px from the top left corner."""
         self.wall_s = self.cpu_ms = 0.0
         self.gui_ms = 0.0
         """Time of Python and of the driver's calls for the panel."""
         self._message, self._message_until = "", 0.0
         gui.scale = preferences.scale
         self.workspace = Workspace(Widgets(gui.fonts, records), pages_of(self), preferences.layout)
-        self._settling = SETTLING_FRAMES
+        self._is_shown = False
+        """Whether the panel has been drawn: before, it settles unseen."""
         self._log_scene()
 
     @property
@@ -111,6 +119,22 @@ class Desk:
             shows_panel=self.shows_panel,
             shows_hud=self.shows_hud,
         )
+
+    @property
+    def camera(self) -> Camera:
+        """Of the next frame, unless the scene moves it on."""
+        return self.fly.camera()
+
+    @property
+    def eye_ws(self) -> tuple[float, float, float]:
+        """Where the camera stands, m."""
+        x, y, z = (float(f"{part:.4g}") for part in self.fly.position)
+        return x, y, z
+
+    @property
+    def wants_mouse(self) -> bool:
+        """Whether the mouse is the panel's or the gizmo's, not the camera's."""
+        return self.gui.wants_mouse or (not self.gui.rests and gizmo_has_mouse())
 
     @property
     def message(self) -> str:
@@ -133,7 +157,7 @@ class Desk:
         else:
             self.gui.rest()
         laid_out = time.perf_counter()
-        if not self.gui.holds:
+        if not (self.gui.holds or (has_gui and gizmo_has_mouse())):
             self.document.settle()
         self._act_on_menus()
         if self.remote is not None:
@@ -155,6 +179,8 @@ class Desk:
         if has_gui:
             self.gui.draw()
         done = time.perf_counter()
+        if self.job is not None:
+            actions.advance_job(self, self.job)
         self.cpu_ms = 1e3 * (presented - laid_out)
         self.gui_ms = 1e3 * (laid_out - began + done - presented)
         self.drawn += 1
@@ -171,15 +197,17 @@ class Desk:
         place: Rect = (0.0, 0.0, *size)
         while True:
             self.gui.begin(size, seconds)
+            begin_gizmo()
             if self.shows_panel:
                 place = self.workspace.draw(lambda w: menu_of(self, w))
+            self.place = place
             overlays(self, place)
             if self.dialog is not None and self.dialog.draw(self.workspace.widgets):
                 self.dialog = None
             self.gui.end()
-            if self._settling == 0 or not self.shows_panel:
+            if self._is_shown or not self.shows_panel or self.workspace.is_settled:
                 break
-            self._settling -= 1
+        self._is_shown = True
         left, top = max(round(place[0]), 0), max(round(place[1]), 0)
         right, bottom = min(round(place[2]), size[0]), min(round(place[3]), size[1])
         width, height = max(right - left, 1), max(bottom - top, 1)
@@ -293,6 +321,8 @@ class Desk:
 
     def release(self) -> None:
         """Free the renderer and ImGui; the device is its maker's."""
+        if self.job is not None:
+            self.job.stop()
         self.observers.release()
         self.gui.release()
         self.renderer.release()

@@ -8,7 +8,7 @@ from pathlib import Path
 from elemental.core.errors import InputError
 from elemental.frame import Renderer
 from elemental.scene.model import Scene
-from elemental.scene.save_scene import save_scene
+from elemental.scene.save_scene import Changes, save_scene
 from elemental.session import Stage, own_settings
 from elemental.settings import SETTINGS, Settings
 from elemental.ui.document import Document, State, same
@@ -52,6 +52,8 @@ class Applied:
             return True
         if changed:
             self.renderer.set_settings(after.settings)
+        if after.lights is not before.lights:
+            self.renderer.set_lights(after.lights)
         if after.volumes is not before.volumes:
             self.renderer.scene.volumes = list(after.volumes)
         for index, (old, new) in enumerate(zip(before.materials, after.materials, strict=True)):
@@ -76,9 +78,15 @@ def save(document: Document, scene: Scene, target: Path) -> None:
     """Write the document to the scene file ``target``. Raises InputError."""
     state, saved = document.state, document.saved
     keys = changed_keys(saved.settings, state.settings)
-    settings = {key: state.settings[key] for key in keys}
-    volumes = None if same(state.volumes, saved.volumes) else state.volumes
-    save_scene(scene.path, target, settings, volumes)
+    changes = Changes(
+        settings={key: state.settings[key] for key in keys},
+        volumes=None if same(state.volumes, saved.volumes) else state.volumes,
+        lights=None if same(state.lights, saved.lights) else (saved.lights, state.lights),
+        materials=(
+            None if same(state.materials, saved.materials) else (saved.materials, state.materials)
+        ),
+    )
+    save_scene(scene.path, target, changes)
     document.mark_saved()
 
 

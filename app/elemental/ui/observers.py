@@ -49,8 +49,12 @@ class Observers:
         """For how many frames in a row the report has been wanted."""
 
     def want(self, what: str) -> None:
-        """Have the "report", the "buffer" looked at, or the "eye" with the next frame."""
+        """Have the "report", the "buffer" looked at, the "eye" or the "volumes" with this frame."""
         self._wants.add(what)
+
+    def wants(self, what: str) -> bool:
+        """Whether a page asked for it in this frame."""
+        return what in self._wants
 
     def before_frame(self, renderer: Renderer) -> None:
         """Arrange for what is wanted."""

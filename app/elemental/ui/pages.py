@@ -7,16 +7,24 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from elemental.frame import VIEWS
+from elemental.scene.volumes import blend
 from elemental.ui import actions
 from elemental.ui.gui import SCALES
 from elemental.ui.hud import Figures, draw_hud, draw_keys, draw_message
+from elemental.ui.in_view import Lens, draw_gizmo, draw_volumes
 from elemental.ui.panel.buffers import BufferView, buffers_page
+from elemental.ui.panel.exposure import exposure_page
 from elemental.ui.panel.graph import GraphView, graph_page
+from elemental.ui.panel.lights import lights_page
 from elemental.ui.panel.log import LogFilter, log_page
+from elemental.ui.panel.materials import materials_page
 from elemental.ui.panel.menu import MenuState, menu_bar
 from elemental.ui.panel.scene import Selection, scene_page
+from elemental.ui.panel.sequence import DEFAULT, sequence_page
 from elemental.ui.panel.settings import settings_page
 from elemental.ui.panel.timeline import timeline_page
+from elemental.ui.panel.volumes import VolumeView, volumes_page
+from elemental.ui.sequence_job import SequenceWords
 from elemental.ui.widgets import Rect, Widgets
 from elemental.ui.workspace import Page
 
@@ -35,6 +43,10 @@ class PageState:
     log: LogFilter = field(default_factory=LogFilter)
     buffers: BufferView = field(default_factory=BufferView)
     graph: GraphView = field(default_factory=GraphView)
+    volumes: VolumeView = field(default_factory=VolumeView)
+    material: int = 0
+    light: int = 0
+    sequence: SequenceWords = DEFAULT
 
 
 def pages_of(desk: Desk) -> list[Page]:
@@ -48,6 +60,27 @@ def pages_of(desk: Desk) -> list[Page]:
 
     def settings(w: Widgets) -> None:
         state.settings = settings_page(w, desk.document, state.settings)
+
+    def volumes(w: Widgets) -> None:
+        observers.want("volumes")
+        eye = desk.eye_ws
+        weights = [volume.weight(eye) for volume in desk.document.state.volumes]
+        volumes_page(w, state.volumes, desk.document, weights, eye)
+
+    def materials(w: Widgets) -> None:
+        folder = desk.stage.scene.path.parent
+        state.material = materials_page(w, state.material, desk.document, folder)
+
+    def lights(w: Widgets) -> None:
+        state.light = lights_page(w, state.light, desk.document)
+
+    def exposure(w: Widgets) -> None:
+        observers.want("eye")
+        parts = desk.document.state
+        exposure_page(w, observers.eye, blend(parts.settings, parts.volumes, desk.eye_ws))
+
+    def sequence(w: Widgets) -> None:
+        state.sequence = sequence_page(w, state.sequence, desk.job, desk.menu_act)
 
     def timeline(w: Widgets) -> None:
         gpu_ms = dict(desk.averages.values)
@@ -73,9 +106,14 @@ def pages_of(desk: Desk) -> list[Page]:
     return [
         Page("Scene", "left", scene),
         Page("Settings", "right", settings),
+        Page("Volumes", "right", volumes),
+        Page("Materials", "right", materials),
+        Page("Lights", "right", lights),
         Page("Timeline", "bottom", timeline),
         Page("Graph", "bottom", graph),
         Page("Buffers", "bottom", buffers),
+        Page("Exposure", "bottom", exposure),
+        Page("Sequence", "bottom", sequence),
         Page("Log", "bottom", log),
     ]
 
@@ -103,12 +141,26 @@ def menu_of(desk: Desk, w: Widgets) -> None:
 
 def overlays(desk: Desk, place: Rect) -> None:
     """What stands over the picture."""
+    if desk.observers.wants("volumes"):
+        _volumes_in_view(desk, place)
     if desk.shows_hud and not desk.shows_help and desk.frame is not None:
         draw_hud(figures_of(desk), place, desk.gui.fonts)
     if desk.shows_help:
         draw_keys(place)
     if desk.message:
         draw_message(desk.message, place)
+
+
+def _volumes_in_view(desk: Desk, place: Rect) -> None:
+    """Outlines of the volumes, and the gizmo on the chosen one."""
+    view, document = desk.pages.volumes, desk.document
+    volumes = document.state.volumes
+    lens = Lens.of(desk.camera, desk.stage.scene.bounds(), place)
+    draw_volumes(lens, volumes, view.chosen)
+    if view.chosen < len(volumes) and not volumes[view.chosen].unbound:
+        dragged = draw_gizmo(lens, volumes[view.chosen], view.gizmo)
+        if dragged is not None:
+            document.set_volume(view.chosen, dragged, ("gizmo", view.chosen))
 
 
 def figures_of(desk: Desk) -> Figures:

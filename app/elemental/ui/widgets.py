@@ -22,6 +22,12 @@ LABEL_SHARE = 0.44
 """Of a row's width, for its label."""
 LOGARITHMIC_SPAN = 100.0
 """A range that is wider than this is slid over by factors, not by differences."""
+LARGEST_SPAN = 1e6
+"""A range that is wider than this is none to slide over."""
+FARTHEST = 1e9
+"""Bound of what can be dragged where there is no other."""
+DRAG_SPEED = 0.005
+"""Change by a pixel, as a part of the value."""
 
 Rect = tuple[float, float, float, float]
 """(left, top, right, bottom) in pixels."""
@@ -62,7 +68,9 @@ class Widgets:
         if rgb is None:
             imgui.text_unformatted(text)
         else:
-            imgui.text_colored(theme.color(rgb), text.replace("%", "%%"))
+            imgui.push_style_color(imgui.Col_.text.value, theme.color(rgb))
+            imgui.text_unformatted(text)
+            imgui.pop_style_color()
 
     def hint(self, text: str) -> None:
         """A paragraph that explains, wrapped."""
@@ -161,13 +169,13 @@ class Widgets:
         imgui.pop_clip_rect()
         self.tooltip(help)
         imgui.same_line(left + value_x)
-        imgui.set_next_item_width(-self._reset_width())
+        imgui.set_next_item_width(-self.reset_width())
 
     def reset(self, name: str, changed: bool, default: str) -> bool:
         """The right end of a row: a button back to the default where the value is another."""
         if not changed:
             return False
-        imgui.same_line(self._row_end - self._reset_width())
+        imgui.same_line(self._row_end - self.reset_width())
         imgui.push_style_color(imgui.Col_.button.value, theme.color(theme.BACKDROP, 0.0))
         imgui.push_style_color(imgui.Col_.text.value, theme.color(theme.ACCENT))
         pressed = imgui.button(f"{icons.RESET}###reset {name}")
@@ -175,23 +183,6 @@ class Widgets:
         self.note(f"reset {name}")
         self.tooltip(f"back to {default}")
         return pressed
-
-    def property(
-        self, name: str, label: str, setting: Setting, value: Any, default: Any
-    ) -> Edit | None:
-        """A row for one value of a kind and a range; returns the edit made in this frame."""
-        height = imgui.get_frame_height()
-        if not imgui.is_rect_visible(imgui.ImVec2(1.0, height)):
-            imgui.dummy(imgui.ImVec2(1.0, height))
-            return None
-        changed = value != default
-        imgui.push_id(name)
-        self.row(label, _help(setting), changed)
-        edit = self.value(name, setting, value)
-        if self.reset(name, changed, setting.value_text(default) or "nothing"):
-            edit = Edit(default)
-        imgui.pop_id()
-        return edit
 
     def value(self, name: str, setting: Setting, value: Any) -> Edit | None:
         """The widget of a value by its kind, of the next item's width."""
@@ -210,11 +201,13 @@ class Widgets:
 
     def number(self, name: str, setting: Setting, value: float) -> Edit | None:
         """A slider over the setting's range; Ctrl and a click, or a double click, to type."""
-        lo, hi = setting.lo or 0.0, setting.hi if setting.hi is not None else 1e6
+        if setting.lo is None or setting.hi is None or setting.hi - setting.lo > LARGEST_SPAN:
+            return self.drag(name, setting, value)
+        lo, hi = setting.lo, setting.hi
         wide = hi - lo > LOGARITHMIC_SPAN
         flags = imgui.SliderFlags_.always_clamp.value
         flags |= imgui.SliderFlags_.logarithmic.value if wide else 0
-        unit = f" {setting.unit}".rstrip().replace("%", "%%")
+        unit = _unit(setting)
         changed: bool
         number: float
         if setting.kind == "int":
@@ -223,10 +216,49 @@ class Widgets:
                 f"##{name}", int(value), int(lo), int(hi), places, flags
             )
         else:
-            places = ("%.3g" if wide else f"%.{3 if hi - lo <= 2.0 else 2}f") + unit
+            places = ("%.4g" if wide else f"%.{3 if hi - lo <= 2.0 else 2}f") + unit
             changed, number = imgui.slider_float(f"##{name}", float(value), lo, hi, places, flags)
         self.note(name)
         return Edit(_short(number, setting.kind), imgui.get_item_id()) if changed else None
+
+    def drag(self, name: str, setting: Setting, value: float) -> Edit | None:
+        """A number without bounds to slide between: a drag changes it by a hundredth of itself."""
+        lo = -FARTHEST if setting.lo is None else setting.lo
+        hi = FARTHEST if setting.hi is None else setting.hi
+        clamp = imgui.SliderFlags_.always_clamp.value
+        changed: bool
+        number: float
+        if setting.kind == "int":
+            changed, number = imgui.drag_int(
+                f"##{name}", int(value), 0.1, int(lo), int(hi), f"%d{_unit(setting)}", clamp
+            )
+        else:
+            speed = max(abs(value), 1.0) * DRAG_SPEED
+            changed, number = imgui.drag_float(
+                f"##{name}", float(value), speed, lo, hi, f"%.4g{_unit(setting)}", clamp
+            )
+        self.note(name)
+        return Edit(_short(number, setting.kind), imgui.get_item_id()) if changed else None
+
+    def vector(
+        self,
+        name: str,
+        value: Sequence[float],
+        unit: str = "",
+        lo: float | None = None,
+        hi: float | None = None,
+    ) -> Edit | None:
+        """Two or three numbers to drag or type."""
+        speed = max(*(abs(part) for part in value), 1.0) * DRAG_SPEED
+        low, high = -FARTHEST if lo is None else lo, FARTHEST if hi is None else hi
+        clamp = imgui.SliderFlags_.always_clamp.value
+        shown = f"%.4g {unit}".rstrip()
+        drag = imgui.drag_float3 if len(value) == 3 else imgui.drag_float2
+        changed, dragged = drag(f"##{name}", list(value), speed, low, high, shown, clamp)
+        self.note(name)
+        return (
+            Edit(tuple(_short(part) for part in dragged), imgui.get_item_id()) if changed else None
+        )
 
     def color(self, name: str, value: Sequence[float], hi: float | None = 1.0) -> Edit | None:
         """Three linear components to drag or type, and a swatch that opens a picker."""
@@ -235,7 +267,7 @@ class Widgets:
         spacing = imgui.get_style().item_inner_spacing.x
         imgui.set_next_item_width(imgui.calc_item_width() - side - spacing)
         clamp = imgui.SliderFlags_.always_clamp.value
-        top = hi if hi is not None else 1e6
+        top = hi if hi is not None else FARTHEST
         changed, dragged = imgui.drag_float3(
             f"##{name}", list(value), 0.005, 0.0, top, "%.3g", clamp
         )
@@ -277,16 +309,16 @@ class Widgets:
             self._typed.pop(key, None)
         return None
 
-    def _reset_width(self) -> float:
+    def reset_width(self) -> float:
+        """Room at a row's right end, px."""
         style = imgui.get_style()
         return imgui.get_font_size() + 2.0 * style.frame_padding.x + style.item_inner_spacing.x
+
+
+def _unit(setting: Setting) -> str:
+    return f" {setting.unit}".rstrip().replace("%", "%%")
 
 
 def _short(number: float, kind: str = "float") -> Any:
     """ImGui's 32-bit number as one would type it: 0.35, not 0.3499999940395355."""
     return int(number) if kind == "int" else float(f"{number:.6g}")
-
-
-def _help(setting: Setting) -> str:
-    lines = [setting.help, f"{setting.range_text()}; default {setting.value_text(setting.default)}"]
-    return "\n".join([*lines, " ".join(part for part in (setting.key, setting.source) if part)])

@@ -33,8 +33,8 @@ class Workspace:
         self.widgets = widgets
         self.pages = tuple(pages)
         self.hidden: set[str] = set()
-        self._front: dict[str, int] = {}
-        """Pages to bring to the front, and for how many frames yet: docks settle slowly."""
+        self._front: list[str] = []
+        """Pages to bring to the front, one a frame; several times each: docks settle slowly."""
         self._wants_layout = True
         if layout:
             imgui.load_ini_settings_from_memory(layout)
@@ -52,11 +52,12 @@ class Workspace:
     def bring_to_front(self, name: str) -> None:
         """Show a page before those that share its place, with the next frame."""
         self.hidden.discard(name)
-        place = next(page.place for page in self.pages if page.name == name)
-        for page in self.pages:
-            if page.place == place:
-                self._front.pop(page.name, None)
-        self._front[name] = SETTLING_FRAMES
+        self._front += [name] * SETTLING_FRAMES
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether every page is where and as it was asked for."""
+        return not (self._front or self._wants_layout)
 
     def draw(self, menu: Callable[[Widgets], None]) -> Rect:
         """All widgets of a frame. Returns the picture's place between them."""
@@ -75,22 +76,19 @@ class Workspace:
         imgui.dock_space_over_viewport(dock, imgui.get_main_viewport(), flags)
         node = imgui.internal.dock_builder_get_central_node(dock)
         place = (node.pos.x, node.pos.y, node.pos.x + node.size.x, node.pos.y + node.size.y)
+        front = self._front.pop(0) if self._front else ""
         for page in self.pages:
             if page.name not in self.hidden:
-                self._draw_page(page)
-        self._front = {name: left - 1 for name, left in self._front.items() if left > 1}
+                self._draw_page(page, page.name == front)
         return place
 
-    def _draw_page(self, page: Page) -> None:
-        if page.name in self._front:
+    def _draw_page(self, page: Page, to_front: bool) -> None:
+        if to_front:
             imgui.set_next_window_focus()
         self.widgets.page = page.name
-        shows, stays = imgui.begin(page.name, True)
-        if shows:
+        if imgui.begin(page.name)[0]:
             page.draw(self.widgets)
         imgui.end()
-        if not stays:
-            self.hidden.add(page.name)
 
     def _build(self, dock: int) -> None:
         build = imgui.internal
@@ -109,8 +107,7 @@ class Workspace:
         for page in self.pages:
             build.dock_builder_dock_window(page.name, places[page.place])
         build.dock_builder_finish(dock)
-        places_front = {page.place for page in self.pages if page.name in self._front}
-        for page in self.pages:
-            if page.place not in places_front:
-                places_front.add(page.place)
-                self._front[page.name] = SETTLING_FRAMES
+        first = {page.place: page.name for page in reversed(self.pages)}
+        self._front = [
+            name for name in first.values() for _ in range(SETTLING_FRAMES)
+        ] + self._front

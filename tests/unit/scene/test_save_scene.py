@@ -2,17 +2,27 @@
 
 from __future__ import annotations
 
+import json
+import math
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from cli.small_scene import corner
 from elemental.core.errors import InputError
-from elemental.scene.save_scene import save_scene
+from elemental.scene.defaults import default_sun
+from elemental.scene.definitions import find_definition
+from elemental.scene.lights import Light
+from elemental.scene.load import load_scene
+from elemental.scene.save_scene import Changes, save_scene
 from elemental.scene.scene_file import flat_settings
+from elemental.ui.document import same
 
 MODELS = '[[models]]\nfile = "m/a.glb"  # the house\n'
 
@@ -49,7 +59,7 @@ def test_what_is_assigned_is_read_back_and_the_rest_stays(
     path = tmp_path_factory.getbasetemp() / f"{layout}.toml"
     path.write_text(LAYOUTS[layout])
     before = tomllib.loads(LAYOUTS[layout])
-    save_scene(path, path, settings)
+    save_scene(path, path, Changes(settings))
     after = tomllib.loads(path.read_text())
     expected = flat_settings(before.get("settings", {}))
     expected |= {k: list(v) if isinstance(v, tuple) else v for k, v in settings.items()}
@@ -62,13 +72,13 @@ def test_what_is_assigned_is_read_back_and_the_rest_stays(
 def test_nothing_changed_leaves_every_byte(tmp_path: Path) -> None:
     path = tmp_path / "a.toml"
     path.write_text(LAYOUTS["dotted"])
-    save_scene(path, path, {})
+    save_scene(path, path, Changes())
     assert path.read_text() == LAYOUTS["dotted"]
 
 
 def test_a_model_is_saved_as_a_scene_that_names_it(tmp_path: Path) -> None:
     (tmp_path / "models").mkdir()
-    save_scene(tmp_path / "models" / "a.glb", tmp_path / "a.toml", {"exposure": 1.5})
+    save_scene(tmp_path / "models" / "a.glb", tmp_path / "a.toml", Changes({"exposure": 1.5}))
     written = tomllib.loads((tmp_path / "a.toml").read_text())
     assert written == {"models": [{"file": "models/a.glb"}], "settings": {"exposure": 1.5}}
 
@@ -77,7 +87,7 @@ def test_saved_elsewhere_it_names_the_same_files(tmp_path: Path) -> None:
     (tmp_path / "there").mkdir()
     here = tmp_path / "here.toml"
     here.write_text(f'{MODELS}[environment]\nfile = "sky.hdr"\n')
-    save_scene(here, tmp_path / "there" / "b.toml", {})
+    save_scene(here, tmp_path / "there" / "b.toml", Changes())
     written = tomllib.loads((tmp_path / "there" / "b.toml").read_text())
     assert written["models"][0]["file"] == "../m/a.glb"
     assert written["environment"]["file"] == "../sky.hdr"
@@ -87,10 +97,70 @@ def test_what_can_not_be_written_is_refused_and_leaves_the_file(tmp_path: Path) 
     path = tmp_path / "a.toml"
     path.write_text(LAYOUTS["none"])
     with pytest.raises(InputError, match="a scene is saved as"):
-        save_scene(path, tmp_path / "a.glb", {})
+        save_scene(path, tmp_path / "a.glb", Changes())
     with pytest.raises(InputError, match="can't be written"):
-        save_scene(path, tmp_path / "nowhere" / "a.toml", {})
+        save_scene(path, tmp_path / "nowhere" / "a.toml", Changes())
     path.write_text("models = 3 = 4")
     with pytest.raises(InputError, match="broken"):
-        save_scene(path, path, {"exposure": 1.0})
+        save_scene(path, path, Changes({"exposure": 1.0}))
     assert [p.name for p in tmp_path.iterdir()] == ["a.toml"]
+
+
+LIT = """[[models]]
+file = "corner.gltf"
+
+[[lights]]  # ours
+kind = "spot"
+position = [0.0, 2.0, 0.0]
+direction = [0.0, -1.0, 0.0]
+lumen = 100.0   # bright enough
+
+[[materials]]
+name = "*"
+parameters = { roughness = 0.5 }  # all alike
+"""
+
+
+def test_lights_and_materials_come_back_as_they_were_left(tmp_path: Path) -> None:
+    gltf = corner()
+    gltf["extensionsUsed"] = ["KHR_lights_punctual"]
+    gltf["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "point", "name": "bulb"}]}}
+    gltf["nodes"].append({"extensions": {"KHR_lights_punctual": {"light": 0}}})
+    gltf["scenes"][0]["nodes"].append(len(gltf["nodes"]) - 1)
+    (tmp_path / "corner.gltf").write_text(json.dumps(gltf))
+    path = tmp_path / "lit.toml"
+    path.write_text(LIT)
+    scene = load_scene(path, default_lights=False)
+    spot, bulb = scene.lights
+    lights = [
+        replace(spot, intensity=12.5, inner_angle=0.25, temperature=3000.0, range=7.0),
+        replace(bulb, name=bulb.name, color=np.array([1, 0.5, 0.25], np.float32), intensity=3.5),
+    ]
+    first, second, third = scene.materials
+    flag = find_definition("flag", tmp_path, path, "shader")
+    materials = [
+        first.with_value("base_color", (0.1, 0.2, 0.3, 1.0)).with_value("metallic", 0.75),
+        second,
+        third.with_definition(flag),
+    ]
+    for _ in range(2):  # the second time into its own tables
+        save_scene(path, path, Changes(
+            lights=(scene.lights, lights), materials=(scene.materials, materials)
+        ))  # fmt: skip
+    again = load_scene(path, default_lights=False)
+    for wanted, got in zip((*lights, *materials), (*again.lights, *again.materials), strict=True):
+        assert same(replace(wanted, **{"inner_angle": got.inner_angle})
+                    if isinstance(wanted, Light) else wanted, got), (wanted, got)  # fmt: skip
+        if isinstance(wanted, Light):
+            assert math.isclose(wanted.inner_angle, got.inner_angle, rel_tol=1e-6)
+    for comment in ("# ours", "# all alike"):
+        assert comment in path.read_text()
+
+
+def test_the_default_sun_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "a.toml"
+    path.write_text(LAYOUTS["none"])
+    changed = replace(default_sun(), intensity=9.0)
+    with pytest.raises(InputError, match="lights"):
+        save_scene(path, path, Changes(lights=([default_sun()], [changed])))
+    assert path.read_text() == LAYOUTS["none"]

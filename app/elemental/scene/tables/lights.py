@@ -53,6 +53,22 @@ class LightTable(Table):
         return self
 
 
+class LightChangeTable(Table):
+    """What becomes of a light that a model brings along."""
+
+    name: Name
+    position: Vec3 | None = None
+    direction: Vec3 | None = None
+    color: Color | None = None
+    temperature: Annotated[float, Field(ge=COOLEST, le=HOTTEST)] | None = None
+    intensity: NonNegative | None = None
+    range: Positive | None = None
+    inner_angle_deg: Annotated[float, Field(ge=0.0, le=90.0)] | None = None
+    outer_angle_deg: HalfAngle | None = None
+    source_radius: NonNegative | None = None
+    casts_shadow: bool | None = None
+
+
 class EnvironmentTable(Table):
     file: Name | None = None
     tint: Color = [1.0, 1.0, 1.0]

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from elemental.settings import SETTINGS, Setting
 from elemental.ui.document import Document
+from elemental.ui.rows import property_row
 from elemental.ui.widgets import Widgets
 
 TITLES = {
@@ -37,7 +38,7 @@ def settings_page(w: Widgets, document: Document, text: str) -> str:
     text = w.search("search", text)
     words = text.lower().split()
     for group, members in GROUPS.items():
-        shown = [setting for setting in members if _matches(setting, words)]
+        shown = [setting for setting in members if matches(setting, words)]
         if not shown:
             continue
         is_open = group not in FOLDED or bool(words)
@@ -59,7 +60,8 @@ def label_of(setting: Setting) -> str:
     return name.replace("_", " ").capitalize()
 
 
-def _matches(setting: Setting, words: list[str]) -> bool:
+def matches(setting: Setting, words: list[str]) -> bool:
+    """Whether a setting is among what is searched for."""
     if not words:
         return True
     text = f"{setting.key} {title_of(setting.key.partition('.')[0])} {setting.help}".lower()
@@ -69,6 +71,6 @@ def _matches(setting: Setting, words: list[str]) -> bool:
 
 def _row(w: Widgets, document: Document, setting: Setting) -> None:
     value = document.state.settings[setting.key]
-    edit = w.property(setting.key, label_of(setting), setting, value, setting.default)
+    edit = property_row(w, setting.key, label_of(setting), setting, value, setting.default)
     if edit is not None:
         document.set(setting.key, edit.value, edit.gesture)
