@@ -93,21 +93,21 @@ def volumes_of(chance: random.Random, center: tuple[float, float, float]) -> lis
 
 @dataclass
 class Storm:
-    """Endless frames of one scene; ``seed`` fixes all of them."""
+    """Frames of one scene; ``seed`` fixes all of them."""
 
     device: Device
     stage: Stage
     seed: int = 0
 
     def __post_init__(self) -> None:
-        self.chance = random.Random(self.seed)
         self.renderer = Renderer(self.device, self.stage.scene, self.stage.settings, LARGEST)
         self._live = [s for s in SETTINGS.values() if s.key not in REBUILDING | REOPENING]
         self._rebuilding = [SETTINGS[key] for key in sorted(REBUILDING)]
 
     def frames(self, count: int) -> Iterator[int]:
-        """Draw ``count`` frames, each done before the next begins; yields its number."""
-        chance = self.chance
+        """Draw the first ``count`` frames, each done before the next begins; yields its number."""
+        chance = self.chance = random.Random(self.seed)
+        self.renderer.set_settings(self.stage.settings)
         low, high = self.stage.scene.bounds()
         for frame in range(count):
             if frame % 5 == 0:
