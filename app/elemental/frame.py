@@ -148,9 +148,13 @@ class Renderer:
         self._meshes.set_material(index, material)
         if self._area_lights or material.emits:
             self._update_area_lights()
+        self._fit_emission()
+
+    def _fit_emission(self) -> None:
+        """Have voxels made anew where materials emit more than they have room for."""
         brightest = sizing.max_emission(self.scene, self._area_lights)
         if self._voxels is not None and brightest > self._voxels.octree.max_emission:
-            self._drop_voxels()  # made anew for that range
+            self._drop_voxels()
 
     def set_lights(self, lights: Sequence[Light]) -> None:
         """Replace the scene's lights from the next frame on. Raises InputError for what none is."""
@@ -202,7 +206,8 @@ class Renderer:
         """Bring the scene to its pose at a time, or to the given one. Returns its lights."""
         if pose is None:
             pose = self._last_pose.at(self.scene, time_s)
-        self._meshes.update(pose, time_s)
+        if self._meshes.update(pose, time_s):
+            self._fit_emission()
         if pose is None:
             return self.scene.lights
         if self._area_lights and pose is not self._followed:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -13,8 +14,9 @@ import pytest
 
 from elemental.core.layout import layouts
 from elemental.gpu.device import Device
+from elemental.passes.decal import Decals
 from elemental.scene.definitions import MaterialDefinition, builtin, read_definition
-from elemental.scene.model import Texture, TextureSlot
+from elemental.scene.model import Decal, Texture, TextureSlot
 from gpu.rig import IDENTITY, MakeRig, Rig, at, camera, material, mesh, read, scene, sun, vector
 from gpu.voxel.stage import Stage
 from shapes import quad, sphere
@@ -142,6 +144,26 @@ def test_the_forward_pass_blends_it(rig: MakeRig, artist: Artist) -> None:
     got = view.scene_color()[..., :3]
     np.testing.assert_allclose(got[points[..., 0] < -0.05].mean(axis=0)[0], 0.125, atol=2e-2)
     np.testing.assert_allclose(got[points[..., 0] > 0.05].mean(axis=0)[1], 0.0625, atol=2e-2)
+
+
+def test_a_decal_wears_it(rig: MakeRig, artist: Artist) -> None:
+    """A box of 1 m that projects downwards onto a white floor."""
+    worn = material(definition=artist.definition(HALVES.replace("? 1.0 : 0.0", "? 1.0 : 0.5")))
+    world = scene((mesh(quad(4.0)), IDENTITY), materials=[material(), worn])
+    downwards = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]], np.float32)
+    world.decals = [Decal("decal", 1, downwards)]
+    view = rig(world, ABOVE)
+    points = view.positions()
+    inside = np.abs(points[..., 2]) < 0.45
+    left = inside & (points[..., 0] > -0.45) & (points[..., 0] < -0.05)
+    right = inside & (points[..., 0] < 0.45) & (points[..., 0] > 0.05)
+    decals = Decals(view.device, world, view.gpu)
+    g, block, gb = view.begin()
+    decals.draw(g, block, gb)
+    codes = read(g, gb.c)[..., :3]
+    decals.release()
+    np.testing.assert_allclose(codes[left].mean(axis=0), [128, 0, 0], atol=1)
+    assert codes[right].mean(axis=0)[1] > codes[right].mean(axis=0)[0] + 30
 
 
 def test_values_and_textures_reach_it(rig: MakeRig, artist: Artist) -> None:
@@ -321,6 +343,39 @@ def test_what_glows_with_time_lights_its_surroundings_with_time(
     assert means[1] / means[0] == pytest.approx(2.0, rel=0.05)
     assert means[2] / means[0] == pytest.approx(3.0, rel=0.05)
     assert means[3] == pytest.approx(means[0], rel=1e-3)
+
+
+def test_an_edit_that_glows_brighter_gets_room_in_the_voxels(
+    renderers: Any, artist: Artist, device: Device
+) -> None:
+    renderer = renderers(lit_room(artist, TICKING))
+    seen = camera(vector(0, 2, 2), vector(0, 0, 0))
+    means = []
+    for frame, glow in enumerate((1, 50)):
+        artist.save(TICKING.replace("[1, 1, 1]", f"[{glow}, {glow}, {glow}]"))
+        assert device.reload_changed_shaders() == []
+        shown = renderer.render(seen, 0.5, frame, "diffuse_gi")
+        means.append(renderer.read(shown)[..., :3].mean())
+    assert means[1] / means[0] == pytest.approx(50.0, rel=0.03)
+
+
+def test_a_watched_folder_tells_of_edits(rig: MakeRig, artist: Artist, device: Device) -> None:
+    view = draws(rig, artist)
+    left, _ = halves(view)
+    device.watch_shaders()
+    try:
+        time.sleep(0.3)  # until the watch is set up
+        device.reload_changed_shaders()
+        artist.save(HALVES.replace("p.left :", "p.left * 2.0 :"))
+        for _ in range(100):
+            device.reload_changed_shaders()
+            if albedo(view)[left].mean(axis=0)[0] > 0.45:
+                break
+            time.sleep(0.05)
+        else:
+            pytest.fail("the edit was never taken up")
+    finally:
+        device.stop_watching_shaders()
 
 
 def test_a_scene_at_rest_does_no_voxel_work(renderers: Any, artist: Artist, device: Device) -> None:

@@ -121,12 +121,13 @@ class GpuScene:
         self.geometry.release()
         self.instances.release()
 
-    def update(self, pose: Pose | None, time_s: float = 0.0) -> None:
+    def update(self, pose: Pose | None, time_s: float = 0.0) -> bool:
         """Begin a frame: take over its pose (None: nothing moved) and list the `changes`.
 
         Uploads what differs, the rows of the changed instances at once. Materials that change with
         time change the instances that bear them.
-        The very pose of a frame that moved nothing is not looked at again.
+        The very pose of a frame that moved nothing is not looked at again. Returns whether edits of
+        materials were taken over.
         """
         passing, edited = self.materials.follow(time_s)
         if edited:
@@ -153,6 +154,7 @@ class GpuScene:
                 self.changes = [*stood, *moved]
         if self.changes:
             self.version += 1
+        return bool(edited)
 
     def deform(self, g: Graph) -> None:
         """Add the passes that bring bent and displaced meshes up to the frame, if any has to be."""
