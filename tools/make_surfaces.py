@@ -23,6 +23,8 @@ MAKER = "tools/make_surfaces.py"
 
 WALL_RADIUS_M = 3.0
 WALL_HEIGHT_M = 2.6
+WALL_FOOT_M = 0.2
+"""Below the floor: a wall that ends on it would let light through the gap that filters see."""
 BALL_RADIUS_M = 0.3
 PANE_M = (0.7, 1.0, 0.02)
 PEDESTAL_M = (0.28, 0.5)
@@ -33,7 +35,7 @@ def wall() -> Mesh:
     """Two thirds of an upright tube, seen from inside, its open side towards +z."""
     turn = np.radians(np.linspace(-120.0, 120.0, 65))
     x, z = WALL_RADIUS_M * np.sin(turn), -WALL_RADIUS_M * np.cos(turn)
-    y = np.array([0.0, WALL_HEIGHT_M])
+    y = np.array([-WALL_FOOT_M, WALL_HEIGHT_M])
     points = np.stack(
         [np.repeat(x[:, None], 2, 1), np.tile(y, (65, 1)), np.repeat(z[:, None], 2, 1)], axis=-1
     )

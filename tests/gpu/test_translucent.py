@@ -67,6 +67,11 @@ def test_the_base_colour_tints_and_the_body_absorbs(rig: MakeRig) -> None:
         seen.append(radiance(rig(world, FRONT))[CENTER])
     np.testing.assert_allclose(seen[1] / seen[0], [0.2, 0.5, 0.9], rtol=0.01)
     np.testing.assert_allclose(seen[2] / seen[0], np.array([0.9, 0.5, 0.1]) ** 2, rtol=0.02)
+    large, matrix = upright(0.5, 1, 0)  # thickness is in the mesh's own units
+    matrix = matrix @ np.diag([2, 2, 2, 1]).astype(np.float32)
+    world = scene(upright(6, 0, -2), (large, matrix), materials=[wall, body])
+    scaled = radiance(rig(world, FRONT))[CENTER]
+    np.testing.assert_allclose(scaled / seen[0], np.array([0.9, 0.5, 0.1]) ** 4, rtol=0.03)
 
 
 def test_a_ball_shows_the_world_upside_down(rig: MakeRig) -> None:
