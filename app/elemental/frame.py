@@ -15,7 +15,7 @@ from elemental.core.layout import Block
 from elemental.gpu.device import Device
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import TextureHandle
-from elemental.gpu.resources import Texture
+from elemental.gpu.resources import Buffer, Texture
 from elemental.passes.area_lights import pack_area_lights
 from elemental.passes.camera_view import pack_view
 from elemental.passes.cone_trace.area_lights import trace_area_lights
@@ -339,6 +339,11 @@ class Renderer:
         if view_name == "scene_color":
             return scene_color
         return develop(g, view, scene_color, gb, s, self._post, self._meshes, self.size)
+
+    @property
+    def eye(self) -> Buffer:
+        """What the eye has adapted to: an ``Eye`` of glsl/shared/exposure.glsl."""
+        return self._post.eye.state
 
     @property
     def _cone_split(self) -> int:

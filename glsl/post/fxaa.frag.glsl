@@ -8,8 +8,10 @@ out vec4 o_color;
 const float CONTRAST_ABSOLUTE = 0.0312;  // [Lottes09] "visible limit"
 const float CONTRAST_RELATIVE = 0.125;   // [Lottes09] "high quality"
 const float SUBPIXEL_SHARE = 0.75;       // [Lottes09] default
-const int SEARCH_STEPS = 10;
-const float SEARCH_GUESS = 6.0;          // px past the last step, where no end was found
+// Where the walk looks, px: a lookup between two texels tells of both, and what is far shifts
+// little. [Lottes09] likewise. Past the last one the end is guessed.
+const float SEARCH_PX[5] = float[](1.0, 2.5, 4.5, 7.5, 11.5);
+const float SEARCH_GUESS_PX = 16.0;
 
 float luma(vec3 display) {
     return dot(display, vec3(0.299, 0.587, 0.114));
@@ -42,11 +44,11 @@ bool edge_is_horizontal() {
 // Walks along the edge from start until the luma leaves the edge's own. x: distance in px,
 // y: luma difference there.
 vec2 walk_edge(vec2 start, vec2 along, float edge_luma, float threshold) {
-    for (int i = 1; i <= SEARCH_STEPS; ++i) {
-        float difference = luma_at(start + along * float(i)) - edge_luma;
-        if (abs(difference) >= threshold) return vec2(float(i), difference);
+    for (int i = 0; i < SEARCH_PX.length(); ++i) {
+        float difference = luma_at(start + along * SEARCH_PX[i]) - edge_luma;
+        if (abs(difference) >= threshold) return vec2(SEARCH_PX[i], difference);
     }
-    return vec2(float(SEARCH_STEPS) + SEARCH_GUESS, 0.0);
+    return vec2(SEARCH_GUESS_PX, 0.0);
 }
 
 // Position to read instead of the pixel's own centre.

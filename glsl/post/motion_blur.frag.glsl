@@ -21,6 +21,11 @@ float cylinder(float distance, float streak) {
     return 1.0 - smoothstep(0.95 * streak, 1.05 * streak, distance);
 }
 
+// -0.5..0.5, evenly spread over any 3x3 pixels. [Jimenez14 "Interleaved Gradient Noise"]
+float jitter() {
+    return fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715)))) - 0.5;
+}
+
 vec2 longest_around(ivec2 tile) {
     ivec2 last = textureSize(u_longest, 0) - 1;
     vec2 longest = vec2(0.0);
@@ -43,9 +48,10 @@ void main() {
     float own = max(length(motion.xy), SHORTEST_PX);
     float weight = 1.0 / own;
     vec3 sum = weight * color.rgb;
+    float shift = jitter();
     for (int i = 0; i < TAPS; ++i) {
         if (i == TAPS / 2) continue;
-        float t = 2.0 * float(i + 1) / float(TAPS + 1) - 1.0;
+        float t = 2.0 * (float(i + 1) + shift) / float(TAPS + 1) - 1.0;
         ivec2 tap = clamp(ivec2(floor(gl_FragCoord.xy + t * along)), ivec2(0), last);
         vec3 there = texelFetch(u_motion_px, tap, 0).xyz;
         float streak = max(length(there.xy), SHORTEST_PX);

@@ -18,7 +18,7 @@ def dirt(seed: int = 7) -> Grey:
     rng = np.random.default_rng(seed)
     width, height = DIRT_SIZE
     y, x = np.mgrid[0:height, 0:width].astype(float)
-    grey = 0.10 * _haze(rng, x / width, y / width)
+    grey = 0.03 * _haze(rng, x / width, y / width)
     for _ in range(420):  # dust
         grey += _spot(x, y, _place(rng), rng.uniform(0.6, 2.2), rng.uniform(0.05, 0.35))
     for _ in range(60):  # droplets
@@ -26,7 +26,7 @@ def dirt(seed: int = 7) -> Grey:
     for _ in range(14):  # streaks of a cloth
         grey += _streak(x, y, _place(rng), rng.uniform(-0.5, 0.2), rng)
     rim = np.hypot(2 * x / width - 1, 2 * y / height - 1) / np.sqrt(2)
-    return np.asarray(np.clip(grey * (0.45 + 0.8 * rim**2), 0, 1))
+    return np.asarray(np.clip(grey * (1.2 + 2.4 * rim**2), 0, 1))
 
 
 def aperture(blades: int) -> Grey:

@@ -103,6 +103,15 @@ def test_what_is_near_spreads_over_what_is_sharp(darkroom: MakeDarkroom) -> None
     assert np.all(np.diff(got[84:114]) < 0.02)
 
 
+def test_what_is_near_is_not_in_the_blur_behind_it(darkroom: MakeDarkroom) -> None:
+    pixels, depth = flat(64, 200, 0.0), np.full((64, 200), depth_at(60.0))
+    pixels[:, :100, :3] = 1.0
+    depth[:, :100] = depth_at(3.0)
+    got = blurred(darkroom(**FOCUS), pixels, depth)[32, :, 0]
+    assert got[100] == pytest.approx(0.5, abs=0.15)
+    assert got[104] < 0.35
+
+
 def test_the_f_stop_divides(darkroom: MakeDarkroom) -> None:
     depth = np.full((128, 200), depth_at(60.0))
     areas = []

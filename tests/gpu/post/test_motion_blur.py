@@ -71,10 +71,10 @@ def test_a_line_becomes_a_streak_of_its_way(
 ) -> None:
     room = darkroom(**OPEN)
     room.set(motion_blur__amount=shutter)
-    got = streaks(room, post(), (way_px, 0.0))[48, :, 0]
+    got = streaks(room, post(), (way_px, 0.0))[20:76, :, 0].mean(axis=0)
     lit = np.flatnonzero(got > 0.5)
     length = abs(way_px) * shutter
-    assert lit[-1] - lit[0] + 1 == pytest.approx(length, abs=1.5 + 0.125 * length)  # 7 of 8 taps
+    assert lit[-1] - lit[0] + 1 == pytest.approx(length, abs=2.5)
     assert lit.mean() == pytest.approx(80, abs=1.0)  # about where it is [McGuire12]
     assert got.sum() == pytest.approx(100.0, rel=0.4)
 
@@ -87,7 +87,7 @@ def test_a_streak_follows_its_direction(darkroom: MakeDarkroom) -> None:
 def test_streaks_have_a_longest(darkroom: MakeDarkroom) -> None:
     room = darkroom(**OPEN)
     room.set(motion_blur__max=5.0)
-    lit = np.flatnonzero(streaks(room, post(), (40.0, 0.0))[48, :, 0] > 0.5)
+    lit = np.flatnonzero(streaks(room, post(), (40.0, 0.0))[20:76, :, 0].mean(axis=0) > 0.5)
     assert lit[-1] - lit[0] + 1 == pytest.approx(0.05 * SIZE[1], abs=2.5)
 
 
@@ -143,7 +143,7 @@ def test_what_moves_streaks_and_the_rest_stays(device: Device) -> None:
         names = [timing.name for timing in device.timings]
         assert ("post/motion_objects" in names) == (amount > 0.0)
         renderer.release()
-    sharp, blurred = (pictures[amount][45, :, 0] for amount in (0.0, 1.0))
+    sharp, blurred = (pictures[amount][41:50, :, 0].mean(axis=0) for amount in (0.0, 1.0))
     way_px = 0.6 * 90 / (2 * (8 - 0.1) * np.tan(0.4))
     widths = [int((row > row.min() + 8).sum()) for row in (sharp, blurred)]
     assert widths[1] - widths[0] == pytest.approx(way_px, rel=0.35)
