@@ -12,7 +12,14 @@ from elemental.frame import Renderer
 from elemental.gpu.device import Device
 from elemental.passes.forward import GRABS_MAX, layers_of
 from elemental.scene.definitions import builtin
-from elemental.scene.model import Camera, Environment, Material, Scene
+from elemental.scene.model import (
+    Camera,
+    Environment,
+    Material,
+    Scene,
+    Texture,
+    TextureSlot,
+)
 from elemental.settings import Settings
 from gpu.rig import IDENTITY, MakeRig, Rig, at, camera, material, mesh, scene, sun, vector
 from gpu.voxel.scenes import colored, facing, glowing, part
@@ -72,6 +79,24 @@ def test_the_base_colour_tints_and_the_body_absorbs(rig: MakeRig) -> None:
     world = scene(upright(6, 0, -2), (large, matrix), materials=[wall, body])
     scaled = radiance(rig(world, FRONT))[CENTER]
     np.testing.assert_allclose(scaled / seen[0], np.array([0.9, 0.5, 0.1]) ** 4, rtol=0.03)
+
+
+def test_a_picture_says_where_light_passes(rig: MakeRig) -> None:
+    """The definition "glass": what does not pass is scattered, as a white surface does."""
+    pixels = np.full((1, 2, 4), 255, np.uint8)
+    pixels[0, 1, 0] = 0
+    halves = Texture("halves", pixels, nearest=True)
+    window = glass(definition=builtin("glass"), textures={"transmission_texture": TextureSlot(0)})
+    square, matrix = upright(1.2, 1, 0)
+    square.uv0 = (square.positions[:, [0, 2]] / 1.2 + 0.5).astype(np.float32)
+    walls, lamp = [light_wall(0.5, 0.5, 0.5), window], sun(vector(0, 0, -1), casts_shadow=False)
+    parts = upright(6, 0, -2), (square, matrix)
+    world = scene(*parts, materials=walls, textures=[halves], lights=[lamp])
+    row = radiance(rig(world, FRONT))[32, 36:60, 0]
+    passes, scatters = row[:9], row[-9:]
+    assert abs(passes.mean() - scatters.mean()) > 0.2
+    assert passes.std() < 0.02
+    np.testing.assert_allclose(sorted([passes.mean(), scatters.mean()]), [0.5, 1.0], atol=0.06)
 
 
 def test_a_ball_shows_the_world_upside_down(rig: MakeRig) -> None:

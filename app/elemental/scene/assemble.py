@@ -165,13 +165,13 @@ def _shifted_mesh(mesh: Mesh, first_material: int) -> Mesh:
 
 
 def _shifted_material(material: Material, first_texture: int) -> Material:
+    def shifted(slot: TextureSlot) -> TextureSlot:
+        return replace(slot, texture=slot.texture + first_texture)
+
     slots: dict[str, TextureSlot | None] = {name: getattr(material, name) for name in TEXTURE_SLOTS}
-    shifted = {
-        name: replace(slot, texture=slot.texture + first_texture)
-        for name, slot in slots.items()
-        if slot is not None
-    }
-    return replace(material, **shifted)  # type: ignore[arg-type]  # the names are TextureSlots'
+    moved: dict[str, object] = {name: shifted(slot) for name, slot in slots.items() if slot}
+    moved["textures"] = {name: shifted(slot) for name, slot in material.textures.items()}
+    return replace(material, **moved)  # type: ignore[arg-type]  # the names are its fields'
 
 
 def _placement(table: ModelTable) -> FloatArray:

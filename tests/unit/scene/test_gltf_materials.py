@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from elemental.scene.load import load_scene
 from elemental.scene.model import Material, Scene, TextureSlot
 from gltf_builder import GltfBuilder
 
@@ -236,11 +237,42 @@ def test_glass_has_the_defaults_of_the_extensions(tmp_path: Path) -> None:
     assert opaque.alpha_mode == "opaque"
 
 
-def test_textures_of_glass_are_left_out_with_a_warning(tmp_path: Path) -> None:
-    table = {"transmissionFactor": 1.0, "transmissionTexture": {"index": 0}}
-    scene, material = glass(tmp_path, table, {"ior": 9.0}, {"thicknessTexture": {"index": 0}})
-    assert [warning.count("is left out") for warning in scene.warnings] == [1, 1]
-    assert material.ior == 3.0
+def test_pictures_of_glass_make_it_the_artists_glass(tmp_path: Path) -> None:
+    builder = GltfBuilder()
+    builder.extend(GLASS[0])
+    slots = [{"index": builder.texture(PIXELS)}, {"index": builder.texture(PIXELS[::-1])}]
+    tables = (
+        {"transmissionFactor": 1.0, "transmissionTexture": slots[0]},
+        {"ior": 9.0},
+        {"thicknessFactor": 2.0, "thicknessTexture": slots[1]},
+    )
+    builder.material(extensions=dict(zip(GLASS, tables, strict=True)))
+    scene, material = load(builder, tmp_path)
+    assert scene.warnings == []
+    assert (material.definition.name, material.ior) == ("glass", 3.0)
+    found = [scene.textures[material.textures[name].texture].pixels
+             for name in ("transmission_texture", "thickness_texture")]  # fmt: skip
+    np.testing.assert_array_equal(found[0], PIXELS)
+    np.testing.assert_array_equal(found[1], PIXELS[::-1])
+
+
+def test_pictures_of_glass_keep_their_place_among_other_models(tmp_path: Path) -> None:
+    plain, window = GltfBuilder(), GltfBuilder()
+    plain.material(pbr={"baseColorTexture": {"index": plain.texture(PIXELS[::-1])}})
+    plain.add(TRIANGLE, material=0)
+    plain.write(tmp_path / "plain.glb")
+    window.extend(GLASS[0])
+    picture = {"index": window.texture(PIXELS)}
+    window.material(
+        extensions={GLASS[0]: {"transmissionFactor": 1, "transmissionTexture": picture}}
+    )
+    window.add(TRIANGLE, material=0)
+    window.write(tmp_path / "window.glb")
+    file = tmp_path / "both.toml"
+    file.write_text('[[models]]\nfile = "plain.glb"\n[[models]]\nfile = "window.glb"\n')
+    scene = load_scene(file, default_lights=False)
+    slot = scene.materials[1].textures["transmission_texture"]
+    np.testing.assert_array_equal(scene.textures[slot.texture].pixels, PIXELS)
 
 
 def test_a_material_that_is_made_glass_is_blended() -> None:

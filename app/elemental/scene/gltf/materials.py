@@ -17,6 +17,7 @@ UNLIT = "KHR_materials_unlit"
 TRANSMISSION = "KHR_materials_transmission"
 IOR = "KHR_materials_ior"
 VOLUME = "KHR_materials_volume"
+GLASS = "glass"
 LARGEST_IOR = 3.0
 """Of what light enters at all: diamond has 2.4."""
 
@@ -53,12 +54,12 @@ def _read_material(field: Field, index: int, textures: Textures) -> Material:
         material.base_color[3] = 1.0
     transmission = field.extension(TRANSMISSION)
     if transmission is not None:
-        _apply_transmission(material, transmission)
+        _apply_transmission(material, transmission, textures)
     ior, volume = field.extension(IOR), field.extension(VOLUME)
     if ior is not None:
         material.ior = min(max(ior.number_or("ior", 1.5, 0.0), 1.0), LARGEST_IOR)
     if volume is not None:
-        _apply_volume(material, volume)
+        _apply_volume(material, volume, textures)
     return material
 
 
@@ -83,26 +84,34 @@ def _emissive(field: Field) -> FloatArray:
     return scaled.astype(np.float32)
 
 
-def _apply_transmission(material: Material, transmission: Field) -> None:
+def _apply_transmission(material: Material, transmission: Field, textures: Textures) -> None:
     """Glass: what is behind it is seen through it."""
     factor = transmission.clamped_or("transmissionFactor", 0.0, 0.0, 1.0)
-    _leave_out(transmission, "transmissionTexture")
     if factor == 0.0:
         return
     material.alpha_mode = "blend"
     material.transmission = factor
+    _take_picture(material, transmission, "transmissionTexture", "transmission_texture", textures)
 
 
-def _apply_volume(material: Material, volume: Field) -> None:
+def _apply_volume(material: Material, volume: Field, textures: Textures) -> None:
     """The body behind the surface, and what it absorbs."""
     material.thickness = volume.number_or("thicknessFactor", 0.0, 0.0)
-    _leave_out(volume, "thicknessTexture")
     material.attenuation_distance = volume.number_or("attenuationDistance", 0.0, 0.0)
     color = volume.find("attenuationColor")
     if color is not None:
         material.attenuation_color = np.clip(color.numbers(3, 0.0), 0.0, 1.0)
+    _take_picture(material, volume, "thicknessTexture", "thickness_texture", textures)
 
 
-def _leave_out(extension: Field, texture: str) -> None:
-    if extension.find(texture) is not None:
-        extension.warn(f"its {texture} is left out; the factor counts everywhere")
+def _take_picture(
+    material: Material, extension: Field, key: str, name: str, textures: Textures
+) -> None:
+    """A texture of the definition "glass", by the first uv set as it is."""
+    slot = textures.slot(extension, key)
+    if slot is None or material.unlit:
+        return
+    if slot.uv_set != 0 or not np.array_equal(slot.uv_from_uv, np.eye(2, 3)):
+        extension.warn(f"{key} is read by the first texture coordinates as they are")
+    material.definition = builtin(GLASS)
+    material.textures = {**material.textures, name: slot}
