@@ -92,12 +92,32 @@ def spotlit_corner() -> Scene:
     )
 
 
+LENS: dict[str, Any] = {
+    "eye_adaptation.min_brightness": 0.03,
+    "eye_adaptation.max_brightness": 2.0,
+    "vignette.intensity": 0.6,
+    "bloom.intensity": 0.7,
+    "bloom.dirt_mask": "dirt.png",
+    "lens_flare.intensity": 0.5,
+    "lens_flare.threshold": 6.0,
+    "color_grading.lut": "evening.cube",
+    "scene_color.fringe": 0.5,
+    "dof.enabled": True,
+    "dof.focal_distance": 320.0,
+    "dof.far_transition": 60.0,
+    "dof.near_transition": 60.0,
+    "dof.f_stop": 6.0,
+}
+"""All that the lens, the eye and the film do."""
+
 SCENES: dict[str, tuple[Callable[[], Scene], dict[str, Any]]] = {
     "colored_room": (colored_room, {"exposure": 0.0}),
     "colored_room_direct": (colored_room, {"gi.enabled": False}),
     "colored_room_bounces": (colored_room, {"gi.bounces": 3}),
     "sunlit_plaza": (sunlit_plaza, {}),
     "spotlit_corner": (spotlit_corner, {"exposure": 1.0}),
+    "colored_room_lens": (colored_room, LENS),
+    "sunlit_plaza_lens": (sunlit_plaza, LENS),
 }
 
 
