@@ -4,9 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import hypothesis
 import pytest
 
 from elemental.gpu.device import Device
+
+hypothesis.settings.register_profile("no deadline", deadline=None)
+"""An example may take long on a machine that others use; pytest bounds the whole test."""
+hypothesis.settings.load_profile("no deadline")
 
 _devices: list[Device] = []
 
