@@ -232,22 +232,29 @@ def test_a_link_is_followed_and_an_unwritable_place_is_told(tmp_path: Path) -> N
 SAVER = """
 import sys
 from pathlib import Path
+from elemental.scene.save_scene import Changes, save_scene
 from elemental.scene.volume_save import save_volumes
 from elemental.scene.volumes import Volume
+file = Path(sys.argv[1])
+whole = lambda path, volumes: save_scene(path, path, Changes(volumes=volumes))
+save = save_volumes if sys.argv[2] == "volumes" else whole
 print("saving", flush=True)
 while True:
     for count in (1, 60):
-        save_volumes(Path(sys.argv[1]), [Volume(f"v{i}") for i in range(count)])
+        save(file, [Volume(f"v{i}") for i in range(count)])
 """
 
 
-def test_a_kill_in_the_middle_of_a_save_leaves_the_old_or_the_new_file(tmp_path: Path) -> None:
+@pytest.mark.parametrize("what", ["volumes", "scene"])
+def test_a_kill_in_the_middle_of_a_save_leaves_the_old_or_the_new_file(
+    tmp_path: Path, what: str
+) -> None:
     file = tmp_path / "yard.toml"
     file.write_text(HEAD + TAIL)
     chance, counts = random.Random(5), set()
     for _ in range(6):
         saver = subprocess.Popen(
-            [sys.executable, "-c", SAVER, str(file)],
+            [sys.executable, "-c", SAVER, str(file), what],
             env={**os.environ, "PYTHONPATH": str(ROOT / "app")},
             stdout=subprocess.PIPE,
         )
