@@ -6,8 +6,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from elemental.scene.tables.base import Name, Number, Positive, Table, Vec3
+from elemental.scene.tables.base import Name, Number, Table, Vec3
 
+Length = Annotated[float, Field(ge=1e-4, le=1e6)]
 Angle = Annotated[float, Field(ge=0.0, le=180.0)]
 LEAST_SINE = 1e-3
 """Of the angle between `direction` and `up`, which tells where a picture's top is."""
@@ -18,7 +19,7 @@ class DecalTable(Table):
     position: Vec3
     direction: Vec3
     up: Vec3 = [0.0, 1.0, 0.0]
-    size: Annotated[list[Positive], Field(min_length=3, max_length=3)]
+    size: Annotated[list[Length], Field(min_length=3, max_length=3)]
     opacity: Annotated[float, Field(ge=0.0, le=1.0)] = 1.0
     order: Annotated[int, Field(ge=-1000, le=1000)] = 0
     fade_deg: Annotated[list[Angle], Field(min_length=2, max_length=2)] = [60.0, 80.0]
