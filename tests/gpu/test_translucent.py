@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -191,6 +192,29 @@ def test_a_two_sided_sheet_covers_twice(rig: MakeRig) -> None:
     walls = [light_wall(0.8, 0.8, 0.8), sheet]
     got = radiance(rig(scene(upright(6, 0, -2), (ball, IDENTITY), materials=walls), FRONT))
     np.testing.assert_allclose(got[CENTER], 0.2, rtol=0.01)
+
+
+def test_triangles_of_one_mesh_are_sorted(rig: MakeRig) -> None:
+    """Two sheets of one mesh, from both sides: the nearer one is over the farther one, whatever the
+    order of their triangles; and again when the instance is turned around."""
+    sheet = material(definition=builtin("unlit"), base_color=vector(1, 1, 1, 0.5),
+                     alpha_mode="blend", double_sided=True)  # fmt: skip
+    near, far = mesh(quad(1.0)), mesh(quad(1.0))
+    near.positions[:, 1], far.positions[:, 1] = 0.2, -0.2
+    near.colors[:, :3], far.colors[:, :3] = (255, 0, 0), (0, 255, 0)
+    turned, back = facing(vector(0, 0, 1)), facing(vector(0, 0, -1))
+    for first, second in ((near, far), (far, near)):
+        both = replace(
+            first,
+            **{name: np.concatenate([getattr(first, name), getattr(second, name)])
+               for name in ("positions", "normals", "tangents", "uv0", "uv1", "colors")},
+            indices=np.concatenate([first.indices, second.indices + len(first.positions)]),
+        )  # fmt: skip
+        for matrix, over in ((turned, 0), (back, 1)):
+            got = radiance(rig(scene((both, matrix), materials=[sheet]), FRONT))[CENTER]
+            want = [0.25, 0.25, 0.0]
+            want[over] = 0.5
+            np.testing.assert_allclose(got, want, atol=0.01)
 
 
 def test_shadows_fall_on_translucent_surfaces(rig: MakeRig) -> None:

@@ -148,7 +148,7 @@ def _draw(
     params: Mapping[str, Block],
 ) -> None:
     def draw(enc: Encoder) -> None:
-        scene.draw(enc, batches, cull=False, seen_by=VIEWER)
+        scene.draw_sorted(enc, batches, VIEWER)
 
     g.raster(
         shader,

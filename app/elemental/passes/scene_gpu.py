@@ -24,6 +24,7 @@ from elemental.passes.scene_displace import displacements
 from elemental.passes.scene_geometry import SceneGeometry
 from elemental.passes.scene_pack import BLEND, OPAQUE, Array, Batch
 from elemental.passes.triangle_lists import TriangleLists
+from elemental.passes.triangle_order import TriangleOrder
 from elemental.scene.area_lights import AreaLight
 from elemental.scene.evaluate import Pose
 from elemental.scene.model import AlphaMode, Material, Scene
@@ -92,6 +93,8 @@ class GpuScene:
         self.lists = TriangleLists(
             self._device, commands, numbers, self.geometry.indices, self.dynamic
         )
+        blended = self.batches(BLEND)
+        self._sorted = TriangleOrder(self._device, self._scene, self.geometry, blended)
         placement = (self.instances, INSTANCE_FORMAT, INSTANCE_NAMES)
         attributes = [*self.geometry.attributes(), placement]
         self._listed = self._device.vertex_input(attributes, self.lists.indices)
@@ -111,6 +114,7 @@ class GpuScene:
         for placed in (self._everything, *self._seen_by.values()):
             placed.release()
         self._listed.release()
+        self._sorted.release()
         self.lists.release()
 
     def release(self) -> None:
@@ -239,7 +243,8 @@ class GpuScene:
     def back_to_front(self, eye: Array, clip_from_world: Array) -> list[Batch]:
         """The blended batches in sight, one an instance, by the distance of its centre to eye (3,).
 
-        clip_from_world (4, 4): the viewer's.
+        clip_from_world (4, 4): the viewer's. `draw_sorted` then draws their triangles in that order
+        too.
         """
         batches = self.batches(BLEND)
         if not batches:
@@ -247,6 +252,10 @@ class GpuScene:
         seen = self._culling.visible(clip_from_world)
         distance = np.linalg.norm(self._culling.centers - eye, axis=1)
         shown = [batch for batch in batches if seen[batch.instance]]
+        for batch in shown:
+            if batch.instance in self._sorted:
+                row = self._table.rows[batch.instance]
+                self._sorted.sort(batch.instance, row["world_from_local"].T, eye)
         return sorted(shown, key=lambda batch: float(distance[batch.instance]), reverse=True)
 
     def box(self, instance: int) -> tuple[Array, Array]:
@@ -277,6 +286,15 @@ class GpuScene:
             if cull:
                 encoder.set(cull="none" if batch.double_sided else "back")
             encoder.draw_indirect(placed.vertices, placed.commands, batch.count, batch.first)
+
+    def draw_sorted(self, encoder: Encoder, batches: Iterable[Batch], seen_by: str) -> None:
+        """Draw batches of `back_to_front`, culling left as it is."""
+        placed = self._placed(seen_by)
+        for batch in self.textured(encoder, batches):
+            if batch.instance in self._sorted:
+                self._sorted.draw(encoder, batch.instance)
+            else:
+                encoder.draw_indirect(placed.vertices, placed.commands, batch.count, batch.first)
 
     def draw_listed(
         self, encoder: Encoder, batches: Iterable[Batch], view: int, *, texture_mask: int
