@@ -314,17 +314,19 @@ class Renderer:
                 )
                 if view_name in SPECULAR_VIEWS:
                     return specular.traced or specular.radiance
+        models = self._meshes.materials.lighting_models
         scene_color = shade(
             g,
             view,
             gb,
             shadows,
             cells=cells,
+            models=models,
             sky=sky if environment is not None else None,
             diffuse_gi=diffuse_gi,
             specular_gi=specular.radiance if specular is not None else None,
         )
-        if octree is not None and diffuse_gi is not None and self._meshes.materials.transmit:
+        if octree is not None and diffuse_gi is not None and "subsurface" in models:
             light_from_behind(g, view, gb, octree, ambient, diffuse_gi)
         scene_color = draw_translucent(
             g,

@@ -1,8 +1,17 @@
 // How a surface of each lighting model reflects and lets through one light: the slides' formulas,
 // light through a surface, cloth, and the share of light that is left for diffuse reflection. Pure
 // functions; every direction is unit. [Mittring12 "Shading"]
+//
+// LIGHTING_MODELS is the mask of the models (1 << LIGHTING_*) that there may be; the code of the others
+// is left out.
 #include "shared/gbuffer.glsl"
 #include "lib/brdf.glsl"
+
+#ifndef LIGHTING_MODELS
+#define LIGHTING_MODELS 15
+#endif
+#define SUBSURFACE_IS_USED ((LIGHTING_MODELS & 4) != 0)
+#define CLOTH_IS_USED ((LIGHTING_MODELS & 8) != 0)
 
 // The slide's energy term makes a sharp lobe reflect 2 pi^1.5 / 10 = 1.114 of the light
 // [Mittring12 "Energy conserving"]: the integral of exp(-(h / a)^4) 4 h 2 pi over the half vector's
@@ -54,7 +63,7 @@ float cloth_albedo(float roughness, float n_o_v) {
 // Below a roughness of 0.5 cloth of the model above would return more than arrives at grazing
 // angles; it is held at 1.
 vec3 mirrored_share(uint lighting_model, vec3 specular_color, float roughness, float n_o_v) {
-    if (lighting_model == LIGHTING_CLOTH) {
+    if (CLOTH_IS_USED && lighting_model == LIGHTING_CLOTH) {
         return specular_color * min(cloth_albedo(roughness, n_o_v), 1.0);
     }
     return environment_brdf(specular_color, roughness, n_o_v);
@@ -90,7 +99,8 @@ ShadingPoint shading_point(vec3 p_ws, vec3 n_ws, vec3 to_eye, vec3 albedo, vec3 
     float n_o_v = clamp(dot(n_ws, to_eye), 0.0, 1.0);
     float roughness = roughness_from_specular_power(specular_power);
     vec3 mirrored = mirrored_share(lighting_model, specular_color, roughness, n_o_v);
-    vec3 through = lighting_model == LIGHTING_SUBSURFACE ? subsurface_color : vec3(0.0);
+    bool shines_through = SUBSURFACE_IS_USED && lighting_model == LIGHTING_SUBSURFACE;
+    vec3 through = shines_through ? subsurface_color : vec3(0.0);
     vec3 hold = diffuse_hold(albedo, through, mirrored);
     return ShadingPoint(p_ws, n_ws, to_eye, albedo * hold, specular_color, specular_power,
                         through * hold, lighting_model, mirrored);
@@ -104,7 +114,7 @@ DirectLight reflect_sample(ShadingPoint p, vec3 to_light, vec3 irradiance, float
     vec3 h = normalize(to_light + p.to_eye);
     DirectLight reflected;
     reflected.diffuse = irradiance * n_o_l * p.albedo / PI;
-    if (p.lighting_model == LIGHTING_CLOTH) {
+    if (CLOTH_IS_USED && p.lighting_model == LIGHTING_CLOTH) {
         float roughness = roughness_from_specular_power(p.specular_power);
         float n_o_v = clamp(dot(p.n_ws, p.to_eye), 0.0, 1.0);
         float n_o_h = clamp(dot(p.n_ws, h), 0.0, 1.0);

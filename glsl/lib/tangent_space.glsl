@@ -22,5 +22,6 @@ vec3 bumped_normal(vec3 n, vec3 height_gradient) {
 // A material's normal in the world: its map's, then its height's. facing as above.
 vec3 surface_normal(Surface s, vec3 normal_ws, vec4 tangent_ws, float facing) {
     vec3 n = normal_from_tangent_space(s.normal_ts, normal_ws, tangent_ws, facing);
-    return bumped_normal(n, s.height_gradient);
+    // Most materials have none, which the compiler sees.
+    return s.height_gradient == vec3(0.0) ? n : bumped_normal(n, s.height_gradient);
 }

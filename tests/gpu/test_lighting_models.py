@@ -161,3 +161,15 @@ def test_indirect_light_shines_through(device: Device) -> None:
         renderer.release()
     assert seen[0.0] < 0.02
     assert seen[THROUGH] == pytest.approx(0.5 * THROUGH, rel=0.15)
+
+
+def test_what_no_material_asks_for_costs_nothing(renderers: Any, device: Device) -> None:
+    """Neither the pass for light from behind nor the code of the models is there."""
+    for name, models in (("standard", set()), ("subsurface", {"subsurface"}), ("cloth", {"cloth"})):
+        world = scene((mesh(sphere(0.5), smooth=True), IDENTITY), materials=[of(name)])
+        renderer = renderers(world)
+        assert renderer._meshes.materials.lighting_models == models
+        renderer.render(ABOVE, 0.0, 0, "scene_color")
+        device.finish()
+        names = {timing.name for timing in device.timings}
+        assert ("cones.through" in names) == (name == "subsurface")

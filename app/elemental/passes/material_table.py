@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import cache
 
 import numpy as np
@@ -85,9 +85,11 @@ class MaterialTable:
         return passing, edited
 
     @property
-    def transmit(self) -> bool:
-        """Whether light may shine through any of them."""
-        return any(material.definition.transmits for material in self._scene.materials)
+    def lighting_models(self) -> frozenset[str]:
+        """The lighting models beyond the default one that any of them asks for."""
+        return frozenset[str]().union(
+            *(m.definition.lighting_models for m in self._scene.materials)
+        )
 
     def reads(self) -> dict[str, Ref]:
         """What lib/material.glsl reads, but for textures."""
@@ -129,6 +131,12 @@ class MaterialTable:
         self._faults.release()
 
 
+def models_mask(lighting_models: Collection[str]) -> int:
+    """LIGHTING_MODELS of a shader that has to know these beside unlit and default."""
+    names = ("unlit", "default", *lighting_models)
+    return sum(1 << int(layouts().constant(f"LIGHTING_{name.upper()}")) for name in names)
+
+
 def material_shader(
     vert: str,
     frag: str,
@@ -163,6 +171,7 @@ def _shader(
         "MATERIAL_TEXTURES": texture_mask,
         "MATERIAL_UV_TRANSFORMS": int(uv_transforms),
         "MATERIAL_FAULTS": int(definition.may_fail),
+        "LIGHTING_MODELS": models_mask(definition.lighting_models),
         **dict(more),
     }
     return Raster(vert, frag, defines=defines, snippets={material_snippets.NAME: definition.key})

@@ -18,7 +18,7 @@ CHANNELS = {
     "specular_power": "specular power by its code, false colour: white is sharpest",
     "ao": "the material's ambient occlusion",
     "depth": "distance, logarithmic, false colour: white is the near plane",
-    "lighting_model": "lighting model: black unlit, violet default, orange subsurface",
+    "lighting_model": "lighting model: black unlit, violet default, orange subsurface, white cloth",
     "subsurface": "subsurface colour",
 }
 """Views of one G-buffer channel -> help; display codes."""

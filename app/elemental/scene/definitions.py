@@ -31,7 +31,8 @@ TEXTURES_MAX = 3
 """Textures of its own: a stage has 16 units, of which glTF's slots, lights, indirect light and
 glass take up to 13."""
 DISPLACEMENT_MAX_M = 1e6
-SUBSURFACE = "LIGHTING_SUBSURFACE"
+LIGHTING_MODELS = ("subsurface", "cloth")
+"""Those that a material has to ask for, by the name LIGHTING_* in its code."""
 
 SHARED: dict[str, ParameterKind] = {
     "base_color": "rgba",
@@ -71,8 +72,8 @@ class MaterialDefinition:
     emits: tuple[str, ...] = ()
     animated: bool = False
     displacement_m: float = 0.0
-    transmits: bool = False
-    """Whether its code names the subsurface lighting model."""
+    lighting_models: frozenset[str] = frozenset()
+    """The lighting models, of LIGHTING_MODELS, that its code names."""
 
     @property
     def key(self) -> str:
@@ -204,7 +205,7 @@ def read_definition(path: Path) -> MaterialDefinition:
         emits=tuple(told["emits"]),
         animated=told["animated"],
         displacement_m=float(told["displacement_m"]),
-        transmits=SUBSURFACE in text,
+        lighting_models=frozenset(m for m in LIGHTING_MODELS if f"LIGHTING_{m.upper()}" in text),
     )
     _check(definition)
     return definition
