@@ -35,7 +35,7 @@ OFF = {
     "eye_adaptation.min_brightness": 0.5, "eye_adaptation.max_brightness": 0.5,
     "bloom.intensity": 0.0, "lens_flare.intensity": 0.0, "vignette.intensity": 0.0,
 }  # fmt: skip
-FLARE = {"lens_flare.threshold": 3.0, "lens_flare.bokeh_size": 5.0}
+FLARE = {"lens_flare.threshold": 2.0, "lens_flare.bokeh_size": 4.0}
 FOCUS = {"dof.enabled": True, "dof.focal_distance": 480.0, "dof.near_transition": 200.0}
 DIRT = {"bloom.intensity": 2.0, "bloom.dirt_mask": "dirt.png"}
 WHITE = "film.white_point"

@@ -48,6 +48,9 @@ SMALLEST_RADIUS = 1.0
 """Of a sprite, px of the picture's quarter: a texel's light always spreads a little [inferred]."""
 SMALLEST_COPY = 0.02
 """Least size of a copy, share of the picture [inferred]."""
+REFLECTED = 0.02
+"""Share of the light in each reflection at intensity 1: between what coated and what plain glass
+sends back [inferred]."""
 SIZE_PER_POSITION = 4.0
 """A position of 0.5 is the centre, 0.75 the picture itself, 0.25 its mirror image [inferred]."""
 
@@ -198,7 +201,7 @@ def _draw(quad: Quad, counts: BufferHandle) -> Callable[[Encoder], None]:
 
 
 def _block(s: Mapping[str, Any], radius: float, shape: Mask, texels: int) -> Block:
-    factor = s["lens_flare.intensity"] / len(REFLECTIONS) * np.array(s["lens_flare.tint"])
+    factor = REFLECTED * s["lens_flare.intensity"] * np.array(s["lens_flare.tint"])
     ghosts = np.zeros((len(REFLECTIONS), 4))
     for ghost, (tint, position) in zip(ghosts, REFLECTIONS, strict=True):
         size = SIZE_PER_POSITION * (s[position] - 0.5)
