@@ -18,6 +18,7 @@ const int CHANNEL_AO = 4;
 const int CHANNEL_DEPTH = 5;
 const int CHANNEL_LIGHTING_MODEL = 6;
 const int CHANNEL_SUBSURFACE = 7;
+const int CHANNEL_DECAL_MASK = 8;
 
 uniform sampler2D u_depth;
 uniform sampler2D u_gbuffer_a;
@@ -32,6 +33,7 @@ vec3 channel_color(GBufferSurface s, float depth) {
     if (CHANNEL == CHANNEL_SPECULAR) return srgb_encode(s.specular_color);
     if (CHANNEL == CHANNEL_SPECULAR_POWER) return false_color(specular_power_encode(s.specular_power));
     if (CHANNEL == CHANNEL_AO) return vec3(s.ambient_occlusion);
+    if (CHANNEL == CHANNEL_DECAL_MASK) return vec3(s.decal_mask);
     if (CHANNEL == CHANNEL_SUBSURFACE) return srgb_encode(s.subsurface_color);
     if (CHANNEL == CHANNEL_LIGHTING_MODEL) return false_color(float(s.lighting_model) / LIGHTING_MODEL_SCALE);
     // Near is bright: logarithmic over the camera's range, so that both ends can be told apart.

@@ -40,6 +40,7 @@ def codes(rig: MakeRig, name: str) -> tuple[np.ndarray, np.ndarray]:
         ("specular", (56, 56, 56)),
         ("ao", (255, 255, 255)),
         ("subsurface", (0, 0, 0)),
+        ("decal_mask", (255, 255, 255)),
     ],
 )
 def test_colours_are_shown_as_display_codes(rig: MakeRig, name: str, shown: tuple[int]) -> None:

@@ -20,6 +20,7 @@ CHANNELS = {
     "depth": "distance, logarithmic, false colour: white is the near plane",
     "lighting_model": "lighting model: black unlit, violet default, orange subsurface, white cloth",
     "subsurface": "subsurface colour",
+    "decal_mask": "share of a decal that a surface takes on",
 }
 """Views of one G-buffer channel -> help; display codes."""
 
