@@ -11,11 +11,12 @@ import numpy.typing as npt
 from elemental.core import transforms
 from elemental.frame import Renderer
 from elemental.gpu.device import Device
-from elemental.scene.model import Camera, Environment, Light, Scene
+from elemental.scene.model import Camera, Decal, Environment, Instance, Light, Scene
+from elemental.scene.scene_decals import box_matrix
 from elemental.settings import Settings
 from gpu.rig import at, material, scene, sun, vector
-from gpu.voxel.scenes import colored, glowing, part
-from shapes import box, sphere, torus
+from gpu.voxel.scenes import colored, glowing, part, turned
+from shapes import box, quad, sphere, torus
 
 SIZE = (128, 72)
 SETTINGS = {
@@ -92,6 +93,31 @@ def spotlit_corner() -> Scene:
     )
 
 
+def stained_room() -> Scene:
+    """The coloured room with paint on its back wall and over a box's edge, a glossy patch on its
+    floor, a ball of glass and a tinted, two-sided panel before it."""
+    made = colored_room()
+    made.materials += [
+        material(base_color=vector(0.9, 0.6, 0.1, 0.8), alpha_mode="blend", roughness=0.8),
+        material(base_color=vector(0.3, 0.3, 0.35, 1), alpha_mode="blend", roughness=0.05),
+        material(roughness=0.0, alpha_mode="blend", transmission=1.0, thickness=0.4),
+        material(base_color=vector(0.2, 0.5, 0.9, 0.4), alpha_mode="blend", double_sided=True),
+    ]
+    made.decals = [
+        Decal("wall", 4, box_matrix([0.3, 0.2, -0.9], [0, 0, -1], [0, 1, 0], [0.8, 0.6, 0.3])),
+        Decal("box", 4, box_matrix([-0.3, -0.1, 0.0], [-0.3, -0.8, -1], [0, 1, 0], [0.3, 0.6, 1])),
+        Decal("floor", 5, box_matrix([0, -0.95, 0.5], [0, -1, 0], [0, 0, -1], [1.4, 0.6, 0.2])),
+    ]
+    glass = [
+        part(sphere(0.2, rings=32), 6, at(0.1, -0.2, 0.5), smooth=True),
+        part(quad(0.6), 7, turned(vector(1, 0, 0), 1.2, to=(0.5, 0.1, 0.6))),
+    ]
+    for shape, matrix in glass:
+        made.instances.append(Instance("glass", len(made.meshes), matrix))
+        made.meshes.append(shape)
+    return made
+
+
 LENS: dict[str, Any] = {
     "eye_adaptation.min_brightness": 0.03,
     "eye_adaptation.max_brightness": 2.0,
@@ -116,6 +142,7 @@ SCENES: dict[str, tuple[Callable[[], Scene], dict[str, Any]]] = {
     "colored_room_bounces": (colored_room, {"gi.bounces": 3}),
     "sunlit_plaza": (sunlit_plaza, {}),
     "spotlit_corner": (spotlit_corner, {"exposure": 1.0}),
+    "stained_room": (stained_room, {"exposure": 0.5}),
     "colored_room_lens": (colored_room, LENS),
     "sunlit_plaza_lens": (sunlit_plaza, LENS),
 }
