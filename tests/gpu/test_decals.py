@@ -276,3 +276,28 @@ def test_what_is_unlit_takes_none(rig: MakeRig) -> None:
     for name in ("scene_color", "c"):
         got, before = (targets(rig(made, ABOVE), name)[0] for made in (world, plain))
         np.testing.assert_array_equal(got, before)
+
+
+def test_an_artists_material_is_projected_and_may_be_replaced(rig: MakeRig) -> None:
+    """The definition "lava" glows on the floor; the next frame shows what took its place."""
+    lava = material(definition=builtin("lava"))
+    view = rig(floor(placed(size=(2, 2, 1)), more=(lava,)), ABOVE)
+    decals = Decals(view.device, view.scene, view.gpu)
+    seen = {}
+    for name, worn in (("lava", lava), ("red", RED)):
+        if name == "red":
+            view.gpu.set_material(1, worn)
+        g, block, gb = view.begin()
+        decals.draw(g, block, gb)
+        g.keep(gb.c)
+        emission = read(g, gb.scene_color)[..., :3].astype(float)
+        assert gb.c.physical is not None
+        seen[name] = emission, gb.c.physical.read()[::-1]
+    decals.release()
+    inside = np.s_[24:40, 40:56]
+    emission, _ = seen["lava"]
+    assert emission[inside].max() > 0.5
+    assert emission[:, :8].max() == 0.0
+    emission, codes = seen["red"]
+    assert emission[inside].max() == 0.0
+    np.testing.assert_array_equal(codes[32, 48], [255, 0, 0, 255])
