@@ -17,6 +17,11 @@ layout(location = 2) out vec4 o_b;
 layout(location = 3) out vec4 o_c;
 layout(location = 4) out vec4 o_d;
 
+#if MATERIAL_FAULTS && !defined(ALPHA_MASK)
+// What is hidden tells of no faults, and writing them turns no early test off.
+layout(early_fragment_tests) in;
+#endif
+
 void main() {
     float facing = gl_FrontFacing ? 1.0 : -1.0;
     Surface s = evaluate_material(MaterialInput(v_material, v_position_ws,

@@ -135,8 +135,9 @@ bool is_fault(float x) {
 #if MATERIAL_FAULTS
 bool is_faulty(Surface s) {
     float sum = dot(s.albedo + s.specular_color + s.emissive + s.subsurface_color, vec3(1.0));
-    sum += dot(s.normal_ts + s.height_gradient, vec3(1.0));
-    return is_fault(sum + s.opacity + s.roughness + s.ambient_occlusion);
+    sum += dot(s.normal_ts + s.height_gradient + s.transmission + s.absorption, vec3(1.0));
+    sum += s.opacity + s.roughness + s.ambient_occlusion + s.ior + s.thickness;
+    return is_fault(sum + s.decal_mask);
 }
 #endif
 

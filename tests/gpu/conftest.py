@@ -12,6 +12,7 @@ from elemental.frame import Renderer
 from elemental.gpu.device import Device
 from elemental.passes.scene_gpu import GpuScene
 from elemental.scene.model import Scene
+from gpu.artist import HALVES, Artist
 from gpu.moving import SETTINGS as MOVING
 from gpu.moving import SIZE
 from gpu.rig import MakeRig, Rig
@@ -64,3 +65,13 @@ def on_device(device: Device) -> Iterator[Any]:
     yield make
     for gpu in made:
         gpu.release()
+
+
+@pytest.fixture
+def artist(tmp_path: Path, device: Device) -> Iterator[Artist]:
+    """Whose last word compiles, since all tests share a device."""
+    made = Artist(tmp_path / "draft.glsl")
+    yield made
+    made.save(HALVES + "vec3 displace(MaterialInput m, Parameters p) { return vec3(0.0); }\n")
+    device.reload_changed_shaders()
+    assert device.library.problems() == []

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from elemental.core.layout import layouts, pack_array
 from elemental.scene.definitions import VECTORS_MAX
-from elemental.scene.model import AlphaMode, Material, Scene, TextureSlot
+from elemental.scene.model import AlphaMode, Material, TextureSlot
 
 CATEGORIES: tuple[AlphaMode, ...] = ("opaque", "mask", "blend")
 """Alpha modes in the order of the draw commands."""
@@ -38,9 +38,8 @@ def texture_slots(material: Material) -> tuple[TextureSlot | None, ...]:
     return tuple(getattr(material, f"{slot}_texture") for slot in SLOTS)
 
 
-def pack_materials(scene: Scene) -> npt.NDArray[Any]:
+def pack_materials(materials: Sequence[Material]) -> npt.NDArray[Any]:
     """(materials,) of the GLSL struct Material."""
-    materials = scene.materials
     slots = [texture_slots(material) for material in materials]
     rows = np.zeros((len(materials), len(SLOTS), 2, 4), np.float32)
     for number, by_slot in enumerate(slots):

@@ -31,13 +31,23 @@ class MaterialTable:
         self._revisions: dict[str, int] = {}
         for number, material in enumerate(scene.materials):
             scene.materials[number] = self._adopt(material)
-        packed = material_pack.pack_materials(scene)
+        packed = material_pack.pack_materials(scene.materials)
         self.rows = device.buffer("scene.materials", packed, category="meshes", dynamic=True)
         none = np.zeros(max(len(packed), 1), "<u4")
         self._faults = device.buffer("scene.material_faults", none, "meshes", dynamic=True)
         self._faulty = none
         self._time_s = 0.0
         self._block = self._pack_frame()
+        self._sort_out()
+
+    def _sort_out(self) -> None:
+        """Find out once what frames ask of all materials."""
+        definitions = [material.definition for material in self._scene.materials]
+        self._ticking = [n for n, definition in enumerate(definitions) if definition.animated]
+        self._may_fail = any(definition.may_fail for definition in definitions)
+        asked = (definition.lighting_models for definition in definitions)
+        self.lighting_models = frozenset[str]().union(*asked)
+        """The lighting models beyond the default one that any of them asks for."""
 
     def _adopt(self, material: Material) -> Material:
         """The material by the definition that the library has of its file."""
@@ -60,8 +70,9 @@ class MaterialTable:
     def set(self, index: int, material: Material) -> None:
         """Replace a material, here and in the scene."""
         self._scene.materials[index] = self._adopt(material)
-        packed = material_pack.pack_materials(self._scene)[index]
+        packed = material_pack.pack_materials(self._scene.materials[index : index + 1])
         self.rows.write(packed.tobytes(), index * packed.nbytes)
+        self._sort_out()
         self._faults.write(np.zeros(1, "<u4"), index * 4)
         self._faulty = np.where(np.arange(len(self._faulty)) == index, 0, self._faulty)
 
@@ -75,7 +86,7 @@ class MaterialTable:
         if time_s != self._time_s:
             self._time_s = time_s
             self._block = self._pack_frame()
-            passing = [n for n in range(len(self._scene.materials)) if self.is_animated(n)]
+            passing = list(self._ticking)
         stale = [k for k, seen in self._revisions.items() if self._snippet(k).revision != seen]
         if not stale:
             return passing, []
@@ -83,13 +94,6 @@ class MaterialTable:
         for index in edited:
             self.set(index, self._scene.materials[index])
         return passing, edited
-
-    @property
-    def lighting_models(self) -> frozenset[str]:
-        """The lighting models beyond the default one that any of them asks for."""
-        return frozenset[str]().union(
-            *(m.definition.lighting_models for m in self._scene.materials)
-        )
 
     def reads(self) -> dict[str, Ref]:
         """What lib/material.glsl reads, but for textures."""
@@ -106,7 +110,7 @@ class MaterialTable:
 
     def watch_faults(self, g: Graph) -> None:
         """Have the frame tell, some frames later, which materials wrote what is no number."""
-        if any(material.definition.may_fail for material in self._scene.materials):
+        if self._may_fail:
             g.read_later(self._faults, self._told)
 
     def _told(self, raw: bytes) -> None:

@@ -47,6 +47,8 @@ def _worn(
         material = material.with_definition(definition)
     if table.double_sided is not None:
         material = replace(material, double_sided=table.double_sided)
+    if table.alpha_mode is not None:
+        material = replace(material, alpha_mode=table.alpha_mode)
     return material
 
 

@@ -42,11 +42,12 @@ def test_a_pattern_dresses_the_materials_that_it_fits(tmp_path: Path) -> None:
     scene = load(
         tmp_path,
         '[[materials]]\nname = "*"\nshader = "rust.glsl"\ndouble_sided = true\n'
+        'alpha_mode = "blend"\n'
         f'[[materials]]\nname = "{plain.materials[0].name}"\n'
         'parameters = { amount = 0.25, mask = "dots.png" }\n',
     )
     assert {m.definition.name for m in scene.materials} == {"rust"}
-    assert all(m.double_sided for m in scene.materials)
+    assert all(m.double_sided and m.alpha_mode == "blend" for m in scene.materials)
     first, others = scene.materials[0], scene.materials[1:]
     assert first.value("amount") == 0.25
     assert all(m.value("amount") == 0.5 for m in others)

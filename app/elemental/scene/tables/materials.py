@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from elemental.scene.materials import AlphaMode
 from elemental.scene.tables.base import Name, Table
 
 
@@ -11,4 +12,5 @@ class MaterialTable(Table):
     name: Name
     shader: Name | None = None
     double_sided: bool | None = None
+    alpha_mode: AlphaMode | None = None
     parameters: dict[str, Any] = {}
