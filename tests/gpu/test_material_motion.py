@@ -8,7 +8,10 @@ import numpy as np
 import pytest
 
 from elemental.gpu.device import Device
+from elemental.scene.deform import deformed
+from elemental.scene.evaluate import evaluate
 from gpu.artist import ABOVE, Artist
+from gpu.moving import bending_stage, pose_of
 from gpu.rig import IDENTITY, MakeRig, at, camera, material, mesh, read, scene, vector
 from shapes import quad, sphere
 
@@ -137,3 +140,51 @@ def test_what_becomes_displaced_gets_room_and_vertices(rig: MakeRig, artist: Art
     low, high = view.gpu.changes[0].after or (None, None)
     np.testing.assert_allclose(low, [-1.0, -0.5, -1.0], atol=1e-6)
     np.testing.assert_allclose(high, [1.0, 0.5, 1.0], atol=1e-6)
+
+
+def test_what_moves_is_displaced_where_it_is(rig: MakeRig, artist: Artist) -> None:
+    """height = 0.1 + 0.3 x in the world, for a plane that slides by 0.4 m along x and back."""
+    worn = material(definition=artist.definition(WAVE)).with_value("slope", 0.3)
+    world = scene((mesh(quad(1.0)), IDENTITY), materials=[worn.with_value("lift", 0.1)])
+    world.instances[0].dynamic = True
+    view = rig(world, ABOVE)
+    for x in (0.4, 0.0):
+        view.gpu.update(
+            pose_of(
+                instances=np.array([0]),
+                world_from_local=at(x, 0, 0)[None],
+                visible=np.array([True]),
+            )
+        )
+        g = view.device.begin_frame()
+        view.gpu.deform(g)
+        g.execute()
+        points = view.positions()
+        p = points[np.isfinite(points[..., 0])]
+        assert abs(p[:, 0].mean() - x) < 0.05
+        np.testing.assert_allclose(p[:, 1], 0.1 + 0.3 * p[:, 0], atol=3e-3)
+        low, high = view.gpu.box(0)
+        np.testing.assert_allclose([low[1], high[1]], [-0.5, 0.5], atol=1e-5)
+
+
+def test_what_bends_is_displaced_from_where_it_bends_to(on_device: Any, artist: Artist) -> None:
+    """Each frame anew, whether the pose or the time changes: nothing adds up."""
+    text = WAVE.replace("/*", "/*\nanimated = true", 1).replace("p.slope", "fract(m.time_s) *")
+    text = text.replace("* * m.position_ws.x", "* 0.125")
+    world = bending_stage()
+    world.materials[0] = material(definition=artist.definition(text))
+    gpu = on_device(world)
+    number = 1
+    shape = world.meshes[world.instances[number].mesh]
+    for pose_s, time_s in ((0.25, 0.5), (0.25, 0.75), (0.7, 0.75)):
+        pose = evaluate(world, pose_s)
+        gpu.update(pose, time_s)
+        g = gpu._device.begin_frame()
+        gpu.deform(g)
+        g.execute()
+        want = deformed(shape, pose.joints.get(number), pose.weights.get(number))
+        first = int(gpu.geometry.packed.placed_vertex[number])
+        positions = gpu.geometry.positions.read(np.float32).reshape(-1, 3)
+        got = positions[first : first + len(want.positions)]
+        lift = 0.25 + time_s * 0.125
+        np.testing.assert_allclose(got, want.positions + lift * want.normals, atol=2e-4)
