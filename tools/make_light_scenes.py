@@ -219,7 +219,7 @@ fov_y_deg = 60.0
 """
 
 
-SIZES_M = (0.0, 0.1, 0.25, 0.5, 1.0)
+SIZES_M = (0.0, 0.06, 0.15, 0.3, 0.6)
 """Radii of the lamps over the glossy floor."""
 APART_M = 2.4
 

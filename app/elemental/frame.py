@@ -75,7 +75,7 @@ OCTREE_VIEWS = frozenset({"diffuse_gi", *SPECULAR_VIEWS, *STEP_VIEWS, *VOXEL_VIE
 
 OCTREE_KEYS = frozenset({"gi.resolution", "gi.memory_budget_mb", "gi.area_lights"})
 SHADOW_KEYS = frozenset(
-    f"shadow.{name}" for name in ("resolution", "cascades", "distance", "budget")
+    f"shadow.{name}" for name in ("resolution", "cascades", "distance", "budget", "penumbras")
 ) | {"lights.culling", "lights.cutoff"}
 """Settings that the octree and the shadow maps are made for."""
 
@@ -423,6 +423,7 @@ def _shadow_settings(settings: Settings) -> ShadowSettings:
         cascades=settings["shadow.cascades"],
         reach=settings["shadow.distance"],
         budget=settings["shadow.budget"],
+        penumbras=settings["shadow.penumbras"],
         culling=settings["lights.culling"],
         cutoff=settings["lights.cutoff"] / 2.0 ** settings["exposure"],
     )

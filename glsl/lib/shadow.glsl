@@ -1,6 +1,7 @@
 // Filtered shadow lookups. Two doors:
 //   light_visibility          any point of the scene, independent of the camera
-//   light_visibility_in_view  a point the camera sees: directional lights take the finest cascade
+//   light_visibility_in_view  a point the camera sees: directional lights take the finest cascade,
+//                             with SOFT_SHADOWS lights that have a size cast penumbras
 #include "shared/light.glsl"
 #include "shared/shadow.glsl"
 
@@ -86,6 +87,13 @@ float light_visibility(uint light, vec3 p_ws, vec3 n_ws, float offset_m) {
     return view_visibility(view_of(l, p_ws), p_ws, n_ws, direction_to(l, p_ws), offset_m);
 }
 
+#ifndef SOFT_SHADOWS
+#define SOFT_SHADOWS 0
+#endif
+#if SOFT_SHADOWS
+#include "lib/soft_shadow.glsl"
+#endif
+
 float light_visibility_in_view(uint light, vec3 p_ws, vec3 n_ws) {
     Light l = lights[light];
     if (l.shadow_view < 0) return 1.0;
@@ -94,5 +102,8 @@ float light_visibility_in_view(uint light, vec3 p_ws, vec3 n_ws) {
         uint cascade = l.first_cascade + i - 1u;
         if (inside_view(cascade, p_ws)) view = cascade;
     }
+#if SOFT_SHADOWS
+    if (l.penumbra_radius > 0.0) return soft_visibility(l, view, p_ws, n_ws, direction_to(l, p_ws));
+#endif
     return view_visibility(view, p_ws, n_ws, direction_to(l, p_ws), 0.0);
 }

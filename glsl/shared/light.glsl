@@ -16,10 +16,10 @@ struct Light {
     uint first_cascade;   // of a directional light: entries in ShadowViews, the finest first
     uint cascade_count;
     int profile;          // layer of the light profiles, or -1: the same in all directions
+    float penumbra_radius;  // source_radius, or 0: hard shadows
     float reserved0;
-    float reserved1;
     vec3 profile_axis_ws; // unit, across direction_ws: the profile's plane at 0 degrees
-    float reserved2;
+    float reserved1;
 };
 
 // Never empty: a scene without lights holds one of intensity 0.

@@ -9,8 +9,7 @@ struct ShadowView {
     float layer;
     float scale;       // side of the tile, as a part of the layer's
     vec2 offset_uv;    // of the tile in its layer
-    float reserved0;
-    float reserved1;
+    vec2 depth_range_m; // near and far plane
 };
 
 layout(std430) readonly buffer ShadowViews { ShadowView shadow_views[]; };

@@ -31,12 +31,15 @@ from elemental.passes.voxel.octree import Octree
 
 FRAG = "forward/forward.frag.glsl"
 VARIANTS = {
-    (gi, cells, glass): Raster(
-        VERT, FRAG, defines={"GI": gi, "LIGHT_CELLS": cells, "TRANSMISSION": glass}
+    (gi, cells, glass, soft): Raster(
+        VERT,
+        FRAG,
+        defines={"GI": gi, "LIGHT_CELLS": cells, "TRANSMISSION": glass, "SOFT_SHADOWS": soft},
     )
     for gi in (0, 1)
     for cells in (ALL_LIGHTS, VIEW_CELLS)
     for glass in (0, 1)
+    for soft in (0, 1)
 }
 """Of glTF's material."""
 
@@ -94,7 +97,7 @@ def draw_translucent(
         return gb.scene_color
     reads: dict[str, Ref] = {
         **scene.reads(),
-        **shadows.light_reads(),
+        **shadows.view_reads(),
         **cells.reads(),
         **sky.reads(),
     }
@@ -104,7 +107,8 @@ def draw_translucent(
         reads |= octree.tracing_reads()
         blocks += [octree.params, {"AreaLights": area_lights}]
     params = {"View": view, **{name: block for some in blocks for name, block in some.items()}}
-    defines = {"GI": int(gathered is not None), "LIGHT_CELLS": cells.kind}
+    gi, soft = int(gathered is not None), int(shadows.soft)
+    defines = {"GI": gi, "LIGHT_CELLS": cells.kind, "SOFT_SHADOWS": soft}
 
     def key(layer: Layer) -> tuple[Raster, RasterState, int]:
         glass = {"TRANSMISSION": int(layer.grab >= 0)}

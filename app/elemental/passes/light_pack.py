@@ -60,11 +60,13 @@ def pack_lights(
     first_view: Sequence[int],
     cascades: Sequence[tuple[int, int]],
     ranges: Sequence[float] | None = None,
+    penumbras: bool = True,
 ) -> Array:
     """(lights,) of the GLSL struct Light; one of intensity 0 where there is none.
 
     first_view: -1 without a shadow; cascades: (first view, count); ranges, m: instead of the
-    lights' own. Profiles are numbered as in `profiles_of`.
+    lights' own; penumbras: whether a light's size softens its shadows. Profiles are numbered as
+    in `profiles_of`.
     """
     if not lights:
         zero, down = np.zeros(3, np.float32), np.array([0.0, -1.0, 0.0], np.float32)
@@ -82,6 +84,7 @@ def pack_lights(
         range=[0.0 if math.isinf(radius) else radius for radius in ranges],
         direction_ws=[light.direction for light in lights],
         source_radius=[light.source_radius for light in lights],
+        penumbra_radius=[light.source_radius * penumbras for light in lights],
         intensity=[light.strength for light in lights],
         kind=[KINDS.index(light.kind) for light in lights],
         spot_scale=spot_scale,

@@ -19,7 +19,7 @@ SHADER = "shade/shade.comp.glsl"
 PLAIN, EVERY = models_mask(()), models_mask(LIGHTING_MODELS)
 """LIGHTING_MODELS: where no material asks for more than the default one, and where any does."""
 VARIANTS = {
-    (sky, diffuse, specular, cells, models): Compute(
+    (sky, diffuse, specular, cells, models, soft): Compute(
         SHADER,
         {
             "SKY": sky,
@@ -27,6 +27,7 @@ VARIANTS = {
             "SPECULAR_GI": specular,
             "LIGHT_CELLS": cells,
             "LIGHTING_MODELS": models,
+            "SOFT_SHADOWS": soft,
         },
     )
     for sky in (0, 1)
@@ -34,6 +35,7 @@ VARIANTS = {
     for specular in (0, 1)
     for cells in (ALL_LIGHTS, VIEW_CELLS)
     for models in (PLAIN, EVERY)
+    for soft in (0, 1)
 }
 
 
@@ -55,7 +57,7 @@ def shade(
     there is no indirect light. cells: of `cull_to_view`. models: the lighting models that
     there may be beyond the default one. sky: drawn behind the scene, black without it.
     """
-    reads: dict[str, Ref] = {**gb.reads(), **shadows.light_reads(), **cells.reads()}
+    reads: dict[str, Ref] = {**gb.reads(), **shadows.view_reads(), **cells.reads()}
     params = {"View": view, **shadows.params(), **cells.params()}
     if sky is not None:
         reads |= sky.reads()
@@ -66,7 +68,7 @@ def shade(
         reads["u_specular_gi"] = specular_gi
     given = (int(sky is not None), int(diffuse_gi is not None), int(specular_gi is not None))
     g.compute(
-        VARIANTS[*given, cells.kind, EVERY if models else PLAIN],
+        VARIANTS[*given, cells.kind, EVERY if models else PLAIN, int(shadows.soft)],
         reads=reads,
         writes={"u_scene_color": gb.scene_color},
         params=params,

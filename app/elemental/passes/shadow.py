@@ -46,7 +46,8 @@ class ShadowMaps:
 
     `light_key` differs when anything differs that the light on a voxel depends on: a light or the
     geometry, not the camera. `lamp_key` differs when a light does. `culled`: whether there are so
-    many lights that passes/light_cells.py sorts them, in `light_words` words of 32.
+    many lights that passes/light_cells.py sorts them, in `light_words` words of 32; `soft`: whether
+    any of them casts penumbras.
     """
 
     def __init__(self, device: Device, settings: ShadowSettings) -> None:
@@ -57,7 +58,7 @@ class ShadowMaps:
         self.light_key: Hashable = None
         self.lamp_key: Hashable = None
         self.counts: dict[str, int] = {}
-        self.culled = False
+        self.culled = self.soft = False
         self.light_words = 1
         self._maps: Texture | None = None
         self._buffers: dict[str, Buffer] = {}
@@ -77,6 +78,12 @@ class ShadowMaps:
     def light_reads(self) -> dict[str, Ref]:
         """What a shader reads that includes lib/lights.glsl, too."""
         return {**self.reads(), **self._profiles.reads()}
+
+    def view_reads(self) -> dict[str, Ref]:
+        """What a shader reads that shades what the camera sees, its SOFT_SHADOWS as `soft` is."""
+        assert self._maps is not None, "update_shadows comes first"
+        depths = {"u_shadow_depths": Sampled(self._maps)} if self.soft else {}
+        return {**self.light_reads(), **depths}
 
     def params(self) -> dict[str, Block]:
         """The uniform blocks of lib/shadow.glsl: none."""
@@ -106,6 +113,7 @@ class ShadowMaps:
         self._upload("Lights", plan.lights)
         self._upload("LightBounds", plan.bounds)
         same_views = not self._upload("ShadowViews", plan.views)
+        self.soft = bool((plan.lights["penumbra_radius"] > 0.0).any() and len(plan.views))
         self.culled, self.light_words = plan.culled, -(-len(plan.lights) // 32)
         self.counts = {"shadow_maps": len(plan.views), "lights_without_shadow": plan.unshadowed}
         light_fields = [name for name in plan.lights.dtype.names or () if "cascade" not in name]

@@ -41,10 +41,12 @@ Bounds = tuple[FloatArray, FloatArray]
 
 @dataclass(frozen=True)
 class FittedView:
-    """One shadow view: clip_from_world (4, 4) and the width of a texel at a clip w of 1, in m."""
+    """One shadow view: clip_from_world (4, 4), the width of a texel at a clip w of 1, in m, and the
+    near and the far plane in m."""
 
     clip_from_world: FloatArray
     texel: float
+    depth_range: tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -141,10 +143,9 @@ def _ortho(
     near, far = -float(depths.max()), -float(depths.min())
     slack = 1e-3 * max(far - near, half)
     x, y = float(center[0]), float(center[1])
-    clip_from_view = transforms.orthographic(
-        x - half, x + half, y - half, y + half, near - slack, far + slack
-    )
-    return FittedView(clip_from_view @ view_from_world, 2.0 * half / resolution)
+    depth_range = near - slack, far + slack
+    clip_from_view = transforms.orthographic(x - half, x + half, y - half, y + half, *depth_range)
+    return FittedView(clip_from_view @ view_from_world, 2.0 * half / resolution, depth_range)
 
 
 def _perspective(
@@ -153,8 +154,9 @@ def _perspective(
     corners = box_corners(*bounds)
     farthest = float(np.linalg.norm(corners - light.position, axis=1).max())
     far = max(min(light.range, farthest) * 1.001, 1e-6)
-    clip_from_view = transforms.perspective(2.0 * math.atan(tangent), 1.0, NEAR_OVER_FAR * far, far)
-    return FittedView(clip_from_view @ view_from_world, 2.0 * tangent / resolution)
+    depth_range = NEAR_OVER_FAR * far, far
+    clip_from_view = transforms.perspective(2.0 * math.atan(tangent), 1.0, *depth_range)
+    return FittedView(clip_from_view @ view_from_world, 2.0 * tangent / resolution, depth_range)
 
 
 def _splits(near: float, far: float, count: int) -> Sequence[tuple[float, float]]:

@@ -28,12 +28,14 @@ CULLED_FROM = 5
 class ShadowSettings:
     """resolution: texels a side of each map; cascades: most of them for a directional light;
     reach: how far they go from the camera in m, 0 = the scene's diagonal; budget: maps that all
-    lights share. culling: many lights are culled, those without a range at `cutoff` lux."""
+    lights share; penumbras: a light's size softens its shadows. culling: many lights are culled,
+    those without a range at `cutoff` lux."""
 
     resolution: int = 1024
     cascades: int = 3
     reach: float = 0.0
     budget: int = 32
+    penumbras: bool = True
     culling: bool = True
     cutoff: float = 1e-3
 
@@ -217,7 +219,9 @@ class ShadowPlanner:
             if not self._culled:
                 ranges = [light.range for light in lights]
                 spheres = light_bounds(lights, ranges)
-            self._packed = cascades, pack_lights(lights, fixed.first_view, spans, ranges), spheres
+            penumbras = self.settings.penumbras
+            structs = pack_lights(lights, fixed.first_view, spans, ranges, penumbras)
+            self._packed = cascades, structs, spheres
         return self._packed[1:]
 
 
@@ -267,6 +271,7 @@ def _pack_views(placed: Sequence[PlacedView], resolution: int) -> Array:
         len(placed),
         clip_from_world=np.array(matrices).reshape(-1, 4, 4),
         texel=[view.fitted.texel for view in placed],
+        depth_range_m=np.array([view.fitted.depth_range for view in placed]).reshape(-1, 2),
         depth_bias=[shadow_fit.DEPTH_BIAS] * len(placed),
         layer=tiles[:, 0],
         scale=tiles[:, 3] / resolution,

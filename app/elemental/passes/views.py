@@ -36,11 +36,13 @@ SURFACE = {
     for name in CHANNELS
 }
 LIGHTS = {
-    (name, cells): Compute(
-        "views/lights.comp.glsl", {"SHOW_RADIANCE": int(name == "direct"), "LIGHT_CELLS": cells}
+    (name, cells, soft): Compute(
+        "views/lights.comp.glsl",
+        {"SHOW_RADIANCE": int(name == "direct"), "LIGHT_CELLS": cells, "SOFT_SHADOWS": soft},
     )
     for name in LIGHT_VIEWS
     for cells in (ALL_LIGHTS, VIEW_CELLS)
+    for soft in (0, 1)
 }
 
 
@@ -69,9 +71,9 @@ def light_view(
     """One of LIGHT_VIEWS, (H, W) RGBA16F linear."""
     image = g.texture(f"view.{name}", size=gb.depth.size, format=RGBA16F)
     g.compute(
-        LIGHTS[name, cells.kind],
+        LIGHTS[name, cells.kind, int(shadows.soft)],
         f"view.{name}",
-        reads={**gb.reads(), **shadows.light_reads(), **cells.reads()},
+        reads={**gb.reads(), **shadows.view_reads(), **cells.reads()},
         writes={"o_image": image},
         params={"View": view, **shadows.params(), **cells.params()},
         threads=image.size,

@@ -106,6 +106,11 @@ TABLE = (
         unit="maps", lo=0, hi=1024,
     ),
     Setting(
+        "shadow.penumbras", "bool", True,
+        "lights that have a size cast penumbras; off: their shadows are as sharp as a point's",
+        source="[Fernando05]",
+    ),
+    Setting(
         "shadow.distance", "float", 0.0,
         "reach of directional shadows from the camera; 0 takes the scene's size",
         unit="m", lo=0, hi=100000,
