@@ -61,6 +61,7 @@ device.glsl_root = lambda: root
 words = Run("corner.gltf", (96, 64), ["gi.enabled=false"], False, 2)
 stage = set_stage(words.scene, words.assignments, Viewpoint(), words.size)
 app = App(Window(words.size, "elemental"), stage, words)
+app.device.stop_watching_shaders()  # ask the files each frame: no edit is missed by a moment
 shader = root / "post/tonemap.frag.glsl"
 good = shader.read_text()
 

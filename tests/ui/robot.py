@@ -13,7 +13,7 @@ from elemental.gpu.device import Device
 from elemental.session import Viewpoint, set_stage
 from elemental.ui.desk import Desk, Words
 from elemental.ui.headless import HeadlessDesk
-from elemental.ui.widgets import Rect
+from elemental.ui.words import Rect
 
 SIZE = (1000, 640)
 QUICK = (

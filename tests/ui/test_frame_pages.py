@@ -155,3 +155,31 @@ def test_keys_and_scale(hands: Hands, scene_file: Path) -> None:
     assert robot.desk.shows_help
     robot.desk.act("quit")
     assert not robot.desk.shows_help
+
+
+def test_the_pixel_inspector_tells_what_the_picture_holds(hands: Hands, scene_file: Path) -> None:
+    robot = hands(scene_file)
+    desk = robot.desk
+    desk.act("pixel")
+    left, top, right, bottom = desk.place
+    robot.move(left + 0.5 * (right - left), top + 0.3 * (bottom - top))
+    robot.frames(5)
+    values = desk.observers.pixel.values
+    assert {"picture", "scene_color"} <= values.keys()
+    x, y = values["picture"].texel
+    pixels = robot.pixels()
+    code = np.array(values["picture"].values) * 255
+    assert np.allclose(code, pixels[pixels.shape[0] - 1 - y, x], atol=1e-3)
+    desk.act("pixel")
+    robot.frames(2)
+    assert desk.renderer.looker is None
+
+
+def test_what_is_hidden_costs_nothing(hands: Hands, scene_file: Path) -> None:
+    robot = hands(scene_file)
+    desk = robot.desk
+    desk.act("panel")
+    robot.frames(3)
+    assert desk.gui.rests  # ImGui itself does not run
+    assert desk.renderer.looker is None
+    assert not desk.wants_mouse

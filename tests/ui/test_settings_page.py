@@ -157,3 +157,19 @@ def test_a_rebuild_waits_until_the_slider_is_let_go(hands: Hands, scene_file: Pa
     robot.button(False)
     robot.frames(2)
     assert robot.desk.renderer.settings["shadow.cascades"] == 1
+
+
+def test_the_default_sun_comes_and_goes(hands: Hands, scene_file: Path) -> None:
+    unlit = scene_file.with_name("unlit.toml")
+    unlit.write_text('[[models]]\nfile = "corner.gltf"\n[[materials]]\nname = "*"\n'
+                     "parameters = { emissive = [0.0, 0.0, 0.0] }\n")  # fmt: skip
+    robot = hands(unlit)
+    before = robot.pixels()
+    assert [light.name for light in robot.desk.document.state.lights] == ["default sun"]
+    robot.desk.document.set("scene.default_lights", False)
+    robot.frames(2)
+    assert robot.desk.document.state.lights == ()
+    assert robot.pixels()[..., :3].max() < before[..., :3].max()
+    robot.desk.act("undo")
+    robot.frames(2)
+    assert np.array_equal(robot.pixels(), before)

@@ -8,18 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from functools import partial
 
 import numpy as np
-import numpy.typing as npt
 
 from elemental.core.layout import Block, layouts, pack
 from elemental.gpu.device import Device
-from elemental.gpu.formats import RGBA8, Format
+from elemental.gpu.formats import RGBA8
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import AnyTexture, Layer, Mip, Sampled, TextureHandle
 from elemental.gpu.resources import Buffer, Texture
 from elemental.gpu.shaders import Compute, Raster
+from elemental.passes.texels import Pixels, texels
 
 KINDS = ("FLOAT", "UINT", "FLOAT_3D", "UINT_3D")
 PICTURE = {
@@ -34,9 +34,9 @@ CHANNELS = ("RGB", "R", "G", "B", "A", "Luminance")
 COLORS = ("Plain", "sRGB", "False colour")
 STENCIL = "Stencil"
 """One more channel of targets that hold one."""
+PICTURE_NAME = "picture"
+"""What the frame's output is called by the pixel inspector."""
 PROBE_BYTES = 32
-
-Pixels = npt.NDArray[Any]
 
 
 @dataclass(frozen=True)
@@ -178,28 +178,83 @@ class Inspector:
             reads={"u_source": read},
             params={"Inspect": block},
         )
-        g.compute(
-            PROBE[kind],
-            "inspect.probe",
-            reads={"u_source": read},
-            writes={"Probed": self._probed},
-            params={"Inspect": block},
-            groups=1,
-        )
+        _probe(g, kind, read, block, self._probed)
         is_uint = kind.startswith("UINT")
         g.read_later(self._probed, lambda raw: self._take(raw, look.probe, is_uint))
 
     def _take(self, raw: bytes, texel: tuple[int, int], is_uint: bool) -> None:
-        values = np.frombuffer(raw, np.float32, 4)
-        words = np.frombuffer(raw, np.uint32, 4, 16)
-        self.probed = Probed(
-            texel, tuple(map(float, values)), tuple(map(int, words)) if is_uint else None
-        )
+        self.probed = _received(raw, texel, is_uint)
 
     def _drop_copy(self) -> None:
         if self._copy is not None:
             self._copy.release()
             self._copy = None
+
+
+class PixelProbe:
+    """The values of one place of the picture in several targets: the pixel inspector."""
+
+    def __init__(self, device: Device, names: tuple[str, ...]) -> None:
+        self.device = device
+        self.names = names
+        """Targets that are asked, besides the frame's output."""
+        self.place = (0.0, 0.0)
+        """From the bottom left corner, 0..1."""
+        self.values: dict[str, Probed] = {}
+        """By target; the frame's output as "picture". A few frames old."""
+        self._buffers: dict[str, Buffer] = {}
+
+    def add(self, g: Graph) -> None:
+        """The passes of one frame."""
+        written = _written(g)
+        found: dict[str, AnyTexture] = {}
+        for resource in g.resources:
+            if isinstance(resource, TextureHandle) and resource.index in written:
+                if resource.index in g.kept:
+                    found[PICTURE_NAME] = resource
+                if resource.name in self.names and len(resource.size) == 2:
+                    found[resource.name] = resource
+        for name, source in found.items():
+            width, height = source.size[:2]
+            texel = (
+                min(max(int(self.place[0] * width), 0), width - 1),
+                min(max(int(self.place[1] * height), 0), height - 1),
+            )
+            look = Look(Target(name, source.size, source.format.name), probe=texel)
+            kind, read = _read(source, look)
+            buffer = self._buffers.get(name)
+            if buffer is None:
+                buffer = self.device.buffer(f"inspect.{name}", PROBE_BYTES)
+                self._buffers[name] = buffer
+            _probe(g, kind, read, _block(look), buffer)
+            g.read_later(buffer, partial(self._take, name, texel, kind.startswith("UINT")))
+
+    def release(self) -> None:
+        """Free everything on the device."""
+        for buffer in self._buffers.values():
+            buffer.release()
+        self._buffers.clear()
+        self.values.clear()
+
+    def _take(self, name: str, texel: tuple[int, int], is_uint: bool, raw: bytes) -> None:
+        self.values[name] = _received(raw, texel, is_uint)
+
+
+def _probe(g: Graph, kind: str, read: Sampled | Mip | Layer, block: Block, buffer: Buffer) -> None:
+    g.compute(
+        PROBE[kind],
+        "inspect.probe",
+        reads={"u_source": read},
+        writes={"Probed": buffer},
+        params={"Inspect": block},
+        groups=1,
+    )
+
+
+def _received(raw: bytes, texel: tuple[int, int], is_uint: bool) -> Probed:
+    values = np.frombuffer(raw, np.float32, 4)
+    words = np.frombuffer(raw, np.uint32, 4, 16)
+    return Probed(texel, tuple(map(float, values)), tuple(map(int, words)) if is_uint else None)
 
 
 def _is(resource: object, target: Target) -> bool:
@@ -246,25 +301,3 @@ def _block(look: Look) -> Block:
         slice=look.layer,
         probe=look.probe,
     )
-
-
-def texels(texture: Texture, level: int, layer: int) -> Pixels:
-    """One layer of one level as (H, W, C) float32 values as shaders read them; row 0 on top."""
-    pixels = texture.read(level)
-    has_layers = pixels.ndim > (3 if texture.format.channels > 1 else 2)
-    if has_layers:
-        pixels = pixels[layer]
-    return np.flipud(_decoded(pixels, texture.format))
-
-
-def _decoded(pixels: Pixels, fmt: Format) -> Pixels:
-    if fmt.name == "RGB10_A2":
-        parts = [(pixels >> shift) & 1023 for shift in (0, 10, 20)]
-        opacity = (pixels >> 30).astype(np.float32) / 3
-        return np.stack([*(p.astype(np.float32) / 1023 for p in parts), opacity], axis=-1)
-    if fmt.name == "D24S8":
-        return ((pixels >> 8).astype(np.float64) / (2**24 - 1)).astype(np.float32)[..., None]
-    values = pixels.astype(np.float32)
-    if fmt.kind != "uint" and np.issubdtype(pixels.dtype, np.integer):
-        values = np.maximum(values / np.float32(np.iinfo(pixels.dtype).max), -1.0)
-    return values if values.ndim == 3 else values[..., None]

@@ -11,10 +11,11 @@ import numpy as np
 
 from elemental.core.errors import InputError
 from elemental.core.images import write_exr
-from elemental.passes.inspect import Pixels, Target
+from elemental.passes.inspect import Target
+from elemental.passes.texels import Pixels
 from elemental.picture import save_picture
 from elemental.scene.evaluate import placed_camera
-from elemental.ui import editor
+from elemental.ui import editor, reopening
 from elemental.ui.panel import buffers
 from elemental.ui.panel.file_dialog import FileDialog
 from elemental.ui.panel.scene import Selection
@@ -51,7 +52,7 @@ def _act_on_picture(desk: Desk, verb: str, word: str, index: int, shift: bool) -
         case "sequence.stop" if desk.job is not None:
             desk.job.stop()
         case "reload":
-            desk.reload()
+            reopening.reload(desk)
         case "view.next":
             desk.next_view(-1 if shift else 1)
         case "view":
@@ -96,6 +97,8 @@ def _act_on_panel(desk: Desk, verb: str, word: str) -> bool:
             desk.shows_help = False
         case "panel":
             desk.shows_panel = not desk.shows_panel
+        case "pixel":
+            desk.shows_pixel = not desk.shows_pixel
         case "hud":
             desk.shows_hud = not desk.shows_hud
         case "toggle" if word in workspace.hidden:

@@ -85,6 +85,7 @@ class App:
     def __init__(self, window: Window, stage: Stage, words: Run) -> None:
         self.window, self.words = window, words
         self.device = Device.from_window(window.get_proc_address)
+        self.device.watch_shaders()
         self._file: Path = preferences.preferences_file()
         self._kept = preferences.load(self._file)
         if words.panel is not None:

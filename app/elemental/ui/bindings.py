@@ -50,6 +50,7 @@ BINDINGS = (
     Binding("help", "press", ("F1",), "show or hide this list"),
     Binding("panel", "press", ("F5",), "show or hide the panel"),
     Binding("hud", "press", ("F6",), "show or hide pass times and counters"),
+    Binding("pixel", "press", ("Q",), "show the values of the pixel under the mouse, or not"),
     Binding("fullscreen", "press", ("F11",), "fullscreen or window"),
     Binding("screenshot", "press", ("F12",), "write a PNG into the working directory"),
     Binding("reload", "press", ("R",), "reload scene and shaders"),

@@ -13,16 +13,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from elemental.core.errors import InputError
 from elemental.frame import VIEWS, Frame, Renderer
 from elemental.gpu.device import Device
 from elemental.gpu.resources import Texture
 from elemental.scene.model import Camera
-from elemental.session import Stage, Viewpoint, set_stage
-from elemental.ui import actions, theme
+from elemental.session import Stage
+from elemental.ui import actions, reopening, theme
 from elemental.ui.averages import Averages
 from elemental.ui.clock import SceneClock
-from elemental.ui.editor import Applied, document_of, reopening_words
+from elemental.ui.editor import Applied, document_of
 from elemental.ui.fly_camera import FlyCamera
 from elemental.ui.gui import Gui
 from elemental.ui.in_view import begin_gizmo, gizmo_has_mouse
@@ -30,10 +29,12 @@ from elemental.ui.log import Kind, Log
 from elemental.ui.observers import Observers
 from elemental.ui.pages import PageState, menu_of, overlays, pages_of
 from elemental.ui.panel.file_dialog import FileDialog
+from elemental.ui.panel.scene import SceneExtent
 from elemental.ui.preferences import Preferences
 from elemental.ui.present import present
 from elemental.ui.sequence_job import SequenceJob
-from elemental.ui.widgets import Rect, Widgets
+from elemental.ui.widgets import Widgets
+from elemental.ui.words import Rect
 from elemental.ui.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -73,7 +74,8 @@ class Desk:
         self.renderer.spreads_gathers = True
         self.document = document_of(stage)
         self.applied = Applied(self.renderer, self.document.state)
-        self.fly = FlyCamera.at(stage.camera, _diagonal(stage))
+        self.extent = SceneExtent.of(stage.scene)
+        self.fly = FlyCamera.at(stage.camera, self.extent.diagonal)
         self.rides = stage.camera_moves
         """Whether the scene moves the camera, until the user does."""
         self.clock = SceneClock()
@@ -82,7 +84,7 @@ class Desk:
         self.view = "final"
         self.drawn = 0
         self.shows_panel, self.shows_hud = preferences.shows_panel, preferences.shows_hud
-        self.shows_help = False
+        self.shows_help = self.shows_pixel = False
         self.frame: Frame | None = None
         self.problems: list[str] = []
         self.log = Log()
@@ -101,8 +103,8 @@ class Desk:
         self.place: Rect = (0.0, 0.0, *size)
         """Of the picture on the window, px from the top left corner."""
         self.wall_s = self.cpu_ms = 0.0
-        self.gui_ms = 0.0
-        """Time of Python and of the driver's calls for the panel."""
+        self.gui_ms = self.layout_ms = 0.0
+        """Time of Python and of the driver's calls for the panel; for its widgets alone."""
         self._message, self._message_until = "", 0.0
         gui.scale = preferences.scale
         self.workspace = Workspace(Widgets(gui.fonts, records), pages_of(self), preferences.layout)
@@ -148,9 +150,7 @@ class Desk:
         """
         began = time.perf_counter()
         self._follow()
-        has_gui = bool(
-            self.shows_panel or self.shows_hud or self.shows_help or self.message or self.dialog
-        )
+        has_gui = self._has_gui
         area = (0, 0, *size)
         if has_gui:
             area = self._lay_out(size, seconds)
@@ -163,7 +163,7 @@ class Desk:
         if self.remote is not None:
             self._take_over_remote(self.remote)
         if self.applied.take_over(self.document):
-            self._reopen()
+            reopening.reopen(self)
         self.renderer.resize((area[2], area[3]))
         if self.rides:
             self.fly.jump(self.stage.camera_at(self.clock.time_s))
@@ -182,8 +182,15 @@ class Desk:
         if self.job is not None:
             actions.advance_job(self, self.job)
         self.cpu_ms = 1e3 * (presented - laid_out)
+        self.layout_ms = 1e3 * (laid_out - began)
         self.gui_ms = 1e3 * (laid_out - began + done - presented)
         self.drawn += 1
+
+    @property
+    def _has_gui(self) -> bool:
+        """Whether there is anything to draw over or around the picture."""
+        shows = self.shows_panel or self.shows_hud or self.shows_help or self.shows_pixel
+        return bool(shows or self.message or self.dialog)
 
     def _lay_out(self, size: tuple[int, int], seconds: float) -> tuple[int, int, int, int]:
         """Make the widgets. Returns the picture's area, from the bottom left corner."""
@@ -271,52 +278,21 @@ class Desk:
         self.view = name
         self.say(f"{name}: {VIEWS[name]}")
 
-    def reload(self) -> None:
-        """Read the scene again; a broken one is reported and the old one stays."""
-        try:
-            stage = set_stage(
-                self.words.scene, self.words.assignments, Viewpoint(), self.renderer.size
-            )
-        except InputError as error:
-            self.say(str(error), "error")
-            return
-        self._replace(stage)
-        self.document = document_of(stage)
-        self.applied = Applied(self.renderer, self.document.state)
-        self.say(f"reloaded {stage.scene.name}")
-
     def open_saved(self, path: Path) -> None:
         """The scene is another file's from now on."""
         self.words = Words(str(path), [])
         self.stage.scene.path = path
 
-    def _reopen(self) -> None:
-        """Read the scene again, by settings that it is read by; a refused edit is taken back."""
-        settings = self.document.state.settings
-        words = reopening_words(settings)
-        try:
-            stage = set_stage(self.words.scene, words, Viewpoint(), self.renderer.size)
-        except InputError as error:
-            self.say(str(error), "error")
-            self.document.refuse()
-            self.applied.state = self.document.state
-            self.renderer.set_settings(self.document.state.settings)
-            return
-        self._replace(replace(stage, settings=settings))
-        stage.scene.volumes = list(self.document.state.volumes)
-        for index, material in enumerate(self.document.state.materials):
-            if material is not self.document.saved.materials[index]:
-                self.renderer.set_material(index, material)
-        self.applied = Applied(self.renderer, self.document.state)
-
-    def _replace(self, stage: Stage) -> None:
+    def show(self, stage: Stage) -> None:
+        """Another scene, or the same one read again; the document is the caller's."""
         self.frame = None
         size = self.renderer.size
         self.renderer.release()
         self.stage = stage
         self.renderer = Renderer(self.device, stage.scene, stage.settings, size)
         self.renderer.spreads_gathers = True
-        self.fly = replace(self.fly, diagonal=_diagonal(stage))
+        self.extent = SceneExtent.of(stage.scene)
+        self.fly = replace(self.fly, diagonal=self.extent.diagonal)
         self._log_scene()
 
     def release(self) -> None:
@@ -326,8 +302,3 @@ class Desk:
         self.observers.release()
         self.gui.release()
         self.renderer.release()
-
-
-def _diagonal(stage: Stage) -> float:
-    low, high = stage.scene.bounds()
-    return float(np.linalg.norm(high.astype(np.float64) - low))

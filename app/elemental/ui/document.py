@@ -161,6 +161,13 @@ class Document:
         lights = _with(self.state.lights, index, light)
         self.edit(f"light {light.name}", replace(self.state, lights=lights), gesture)
 
+    def follow_lights(self, lights: tuple[Light, ...]) -> None:
+        """The newest step brought other lights along: they are part of it."""
+        self.state = replace(self.state, lights=lights)
+        if self._undo:
+            newest = self._undo[-1]
+            self._undo[-1] = Step(newest.label, newest.before, self.state)
+
     def set_volumes(
         self, volumes: tuple[Volume, ...], label: str, gesture: Hashable = None
     ) -> None:

@@ -57,7 +57,7 @@ class Applied:
         if after.volumes is not before.volumes:
             self.renderer.scene.volumes = list(after.volumes)
         for index, (old, new) in enumerate(zip(before.materials, after.materials, strict=True)):
-            if new is not old:
+            if not same(old, new):
                 self.renderer.set_material(index, new)
         return False
 

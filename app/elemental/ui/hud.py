@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 from imgui_bundle import imgui
 
+from elemental.passes.inspect import PICTURE_NAME, Probed
 from elemental.ui import theme
 from elemental.ui.bindings import BINDINGS
 from elemental.ui.theme import Fonts
-from elemental.ui.widgets import Rect
+from elemental.ui.words import Rect
 
 MARGIN_PX = 10.0
 BACKGROUND_OPACITY = 0.85
@@ -87,6 +88,26 @@ def draw_keys(place: Rect) -> None:
     _begin("keys", ((place[0] + place[2]) / 2, (place[1] + place[3]) / 2), (0.5, 0.5))
     _colored(theme.ACCENT, "Keys")
     _two_columns("bindings", [(binding.keys_text(), binding.help) for binding in BINDINGS])
+    imgui.end()
+
+
+def draw_pixel(values: Mapping[str, Probed], place: Rect, fonts: Fonts) -> None:
+    """Beside the mouse: what the pixel under it holds. The picture's own as display codes too."""
+    mouse = imgui.get_mouse_pos()
+    right = mouse.x > (place[0] + place[2]) / 2
+    lower = mouse.y > (place[1] + place[3]) / 2
+    offset = (-MARGIN_PX if right else 2 * MARGIN_PX, -MARGIN_PX if lower else MARGIN_PX)
+    _begin("pixel", (mouse.x + offset[0], mouse.y + offset[1]), (float(right), float(lower)))
+    imgui.push_font(fonts.figures, 0.0)
+    for name, probed in values.items():
+        x, y = probed.texel
+        numbers = "  ".join(f"{value:.6g}" for value in probed.values[:3])
+        if name == PICTURE_NAME and max(probed.values) <= 1.0:
+            codes = "  ".join(f"{255 * value:.0f}" for value in probed.values[:3])
+            numbers = f"{numbers}   ({codes})"
+        _colored(theme.MUTED, f"{name} ({x}, {y})")
+        imgui.text_unformatted(numbers)
+    imgui.pop_font()
     imgui.end()
 
 

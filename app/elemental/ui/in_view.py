@@ -16,7 +16,7 @@ from elemental.passes.camera_view import far_plane
 from elemental.scene.model import Camera, FloatArray
 from elemental.scene.volumes import Volume, rotation_rows
 from elemental.ui import theme
-from elemental.ui.widgets import Rect
+from elemental.ui.words import Rect
 
 gizmo = imguizmo.im_guizmo
 OPERATIONS = {

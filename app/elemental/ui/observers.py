@@ -16,12 +16,14 @@ from elemental.gpu.device import Device
 from elemental.gpu.graph import Graph
 from elemental.gpu.graph_report import GraphReport
 from elemental.gpu.resources import Buffer
-from elemental.passes.inspect import Inspector
+from elemental.passes.inspect import Inspector, PixelProbe
 
 REPORT_FRAMES = 15
 """The graph is described once in so many frames."""
 FIRST_FRAMES = 4
 """Before, in each: the first graphs build the octree, and times are known two frames later."""
+PIXEL_TARGETS = ("scene_color", "diffuse_gi", "specular_gi")
+"""Asked by the pixel inspector, besides the picture itself."""
 EYE = "eye"
 """Name of the buffer that holds the eye's state (passes/post/exposure.py)."""
 
@@ -42,6 +44,7 @@ class Observers:
     def __init__(self, device: Device) -> None:
         self.device = device
         self.inspector = Inspector(device)
+        self.pixel = PixelProbe(device, PIXEL_TARGETS)
         self.eye: EyeReading | None = None
         self.report: GraphReport | None = None
         self._wants: set[str] = set()
@@ -49,7 +52,7 @@ class Observers:
         """For how many frames in a row the report has been wanted."""
 
     def want(self, what: str) -> None:
-        """Have the "report", the "buffer" looked at, the "eye" or the "volumes" with this frame."""
+        """Have the "report", "buffer", "eye", "pixel" or "volumes" with this frame."""
         self._wants.add(what)
 
     def wants(self, what: str) -> bool:
@@ -58,7 +61,7 @@ class Observers:
 
     def before_frame(self, renderer: Renderer) -> None:
         """Arrange for what is wanted."""
-        active = self._wants & {"buffer", "eye"}
+        active = self._wants & {"buffer", "eye", "pixel"}
         renderer.looker = self._add if active else None
         if "report" not in self._wants:
             self.report, self._asked_frames = None, 0
@@ -81,10 +84,13 @@ class Observers:
     def release(self) -> None:
         """Free everything on the device."""
         self.inspector.release()
+        self.pixel.release()
 
     def _add(self, g: Graph) -> None:
         if "buffer" in self._wants:
             self.inspector.add(g)
+        if "pixel" in self._wants:
+            self.pixel.add(g)
         if "eye" in self._wants:
             state = next((r for r in g.resources if isinstance(r, Buffer) and r.name == EYE), None)
             if state is None:

@@ -6,11 +6,13 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING
 
+from imgui_bundle import imgui
+
 from elemental.frame import VIEWS
 from elemental.scene.volumes import blend
 from elemental.ui import actions
 from elemental.ui.gui import SCALES
-from elemental.ui.hud import Figures, draw_hud, draw_keys, draw_message
+from elemental.ui.hud import Figures, draw_hud, draw_keys, draw_message, draw_pixel
 from elemental.ui.in_view import Lens, draw_gizmo, draw_volumes
 from elemental.ui.panel.buffers import BufferView, buffers_page
 from elemental.ui.panel.exposure import exposure_page
@@ -25,7 +27,8 @@ from elemental.ui.panel.settings import settings_page
 from elemental.ui.panel.timeline import timeline_page
 from elemental.ui.panel.volumes import VolumeView, volumes_page
 from elemental.ui.sequence_job import SequenceWords
-from elemental.ui.widgets import Rect, Widgets
+from elemental.ui.widgets import Widgets
+from elemental.ui.words import Rect
 from elemental.ui.workspace import Page
 
 if TYPE_CHECKING:
@@ -56,7 +59,9 @@ def pages_of(desk: Desk) -> list[Page]:
     def scene(w: Widgets) -> None:
         opened, parts = desk.stage.scene, desk.document.state
         choose = partial(actions.choose, desk)
-        state.scene = scene_page(w, opened, parts, state.selection, state.scene, choose)
+        state.scene = scene_page(
+            w, opened, desk.extent, parts, state.selection, state.scene, choose
+        )
 
     def settings(w: Widgets) -> None:
         state.settings = settings_page(w, desk.document, state.settings)
@@ -143,6 +148,8 @@ def overlays(desk: Desk, place: Rect) -> None:
     """What stands over the picture."""
     if desk.observers.wants("volumes"):
         _volumes_in_view(desk, place)
+    if desk.shows_pixel:
+        _pixel_in_view(desk, place)
     if desk.shows_hud and not desk.shows_help and desk.frame is not None:
         draw_hud(figures_of(desk), place, desk.gui.fonts)
     if desk.shows_help:
@@ -155,12 +162,26 @@ def _volumes_in_view(desk: Desk, place: Rect) -> None:
     """Outlines of the volumes, and the gizmo on the chosen one."""
     view, document = desk.pages.volumes, desk.document
     volumes = document.state.volumes
-    lens = Lens.of(desk.camera, desk.stage.scene.bounds(), place)
+    lens = Lens.of(desk.camera, (desk.extent.low, desk.extent.high), place)
     draw_volumes(lens, volumes, view.chosen)
     if view.chosen < len(volumes) and not volumes[view.chosen].unbound:
         dragged = draw_gizmo(lens, volumes[view.chosen], view.gizmo)
         if dragged is not None:
             document.set_volume(view.chosen, dragged, ("gizmo", view.chosen))
+
+
+def _pixel_in_view(desk: Desk, place: Rect) -> None:
+    """The pixel inspector, while the mouse is over the picture."""
+    mouse = imgui.get_mouse_pos()
+    across = (mouse.x - place[0]) / max(place[2] - place[0], 1.0)
+    down = (mouse.y - place[1]) / max(place[3] - place[1], 1.0)
+    if not (0.0 <= across < 1.0 and 0.0 <= down < 1.0):
+        return
+    pixel = desk.observers.pixel
+    pixel.place = (across, 1.0 - down)
+    desk.observers.want("pixel")
+    if pixel.values:
+        draw_pixel(pixel.values, place, desk.gui.fonts)
 
 
 def figures_of(desk: Desk) -> Figures:

@@ -6,8 +6,7 @@ does: by what it says.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Hashable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,7 +15,8 @@ from imgui_bundle import imgui
 from elemental.picture import decode_srgb, encode_srgb
 from elemental.settings import Setting
 from elemental.ui import icons, theme
-from elemental.ui.theme import Fonts, Rgb
+from elemental.ui.theme import Fonts
+from elemental.ui.words import Words
 
 LABEL_SHARE = 0.44
 """Of a row's width, for its label."""
@@ -29,9 +29,6 @@ FARTHEST = 1e9
 DRAG_SPEED = 0.005
 """Change by a pixel, as a part of the value."""
 
-Rect = tuple[float, float, float, float]
-"""(left, top, right, bottom) in pixels."""
-
 
 class Edit(NamedTuple):
     """A new value, and the gesture that it belongs to: None where it is a step of its own."""
@@ -40,72 +37,13 @@ class Edit(NamedTuple):
     gesture: Hashable = None
 
 
-class Widgets:
-    """ImGui's widgets in the panel's manner. ``items`` is None where nobody asks for places."""
+class Widgets(Words):
+    """ImGui's widgets in the panel's manner."""
 
     def __init__(self, fonts: Fonts, records: bool = False) -> None:
-        self.fonts = fonts
-        self.items: dict[str, Rect] | None = {} if records else None
-        self.page = ""
+        super().__init__(fonts, records)
         self._typed: dict[int, str] = {}
         self._row_end = 0.0
-
-    def begin_frame(self) -> None:
-        """Forget where things were."""
-        if self.items is not None:
-            self.items.clear()
-
-    def note(self, label: str) -> None:
-        """Record the last item under the page's name and ``label``, if it can be seen."""
-        if self.items is not None and imgui.is_item_visible():
-            low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
-            self.items[f"{self.page}/{label}"] = (low.x, low.y, high.x, high.y)
-
-    # Words -------------------------------------------------------------------------------------
-
-    def text(self, text: str, rgb: Rgb | None = None) -> None:
-        """A line, as it is."""
-        if rgb is None:
-            imgui.text_unformatted(text)
-        else:
-            imgui.push_style_color(imgui.Col_.text.value, theme.color(rgb))
-            imgui.text_unformatted(text)
-            imgui.pop_style_color()
-
-    def hint(self, text: str) -> None:
-        """A paragraph that explains, wrapped."""
-        imgui.push_style_color(imgui.Col_.text.value, theme.color(theme.MUTED))
-        imgui.push_text_wrap_pos(0.0)
-        imgui.text_unformatted(text)
-        imgui.pop_text_wrap_pos()
-        imgui.pop_style_color()
-
-    def tooltip(self, text: str) -> None:
-        """What is told when the mouse rests on the last item."""
-        if text and imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip.value):
-            imgui.begin_tooltip()
-            imgui.push_text_wrap_pos(imgui.get_font_size() * 24.0)
-            imgui.text_unformatted(text)
-            imgui.pop_text_wrap_pos()
-            imgui.end_tooltip()
-
-    @contextmanager
-    def figures(self) -> Iterator[None]:
-        """Text in figures of one width."""
-        imgui.push_font(self.fonts.figures, 0.0)
-        try:
-            yield
-        finally:
-            imgui.pop_font()
-
-    def flow(self, width: float) -> None:
-        """Stay on the line if ``width`` more pixels fit, else go on on the next."""
-        right = imgui.get_cursor_screen_pos().x + imgui.get_content_region_avail().x
-        end = imgui.get_item_rect_max().x + imgui.get_style().item_spacing.x + width
-        if end <= right:
-            imgui.same_line()
-
-    # Plain items -------------------------------------------------------------------------------
 
     def button(self, label: str, name: str = "", enabled: bool = True, help: str = "") -> bool:
         """A button; ``name`` is what it is recorded as where the label is an icon."""

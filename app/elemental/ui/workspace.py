@@ -8,7 +8,8 @@ from typing import Literal
 
 from imgui_bundle import imgui
 
-from elemental.ui.widgets import Rect, Widgets
+from elemental.ui.widgets import Widgets
+from elemental.ui.words import Rect
 
 DOCK = "workspace"
 LEFT_SHARE, RIGHT_SHARE, BOTTOM_SHARE = 0.17, 0.32, 0.34

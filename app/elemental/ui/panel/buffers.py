@@ -13,7 +13,8 @@ import numpy as np
 from imgui_bundle import imgui
 
 from elemental.gpu.graph_report import GraphReport, GraphResource
-from elemental.passes.inspect import CHANNELS, COLORS, STENCIL, Inspector, Look, Pixels, Target
+from elemental.passes.inspect import CHANNELS, COLORS, STENCIL, Inspector, Look, Target
+from elemental.passes.texels import Pixels
 from elemental.ui import icons, theme
 from elemental.ui.widgets import Widgets
 

@@ -82,6 +82,7 @@ def _view_menu(w: Widgets, state: MenuState, item: _Items) -> None:
     imgui.separator()
     item("panel", "Hide panel", KEYS["panel"])
     item("hud", "Pass times over the picture", KEYS["hud"])
+    item("pixel", "Pixel under the mouse", KEYS["pixel"])
     item("fullscreen", "Fullscreen", KEYS["fullscreen"])
 
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
 from imgui_bundle import imgui
 
-from elemental.scene.model import Scene
+from elemental.scene.model import FloatArray, Scene
 from elemental.ui import icons, theme
 from elemental.ui.document import State
 from elemental.ui.widgets import Widgets
@@ -17,9 +19,29 @@ Selection = tuple[Kind, int]
 """What is chosen in the panel: of which kind, which one."""
 
 
+@dataclass(frozen=True)
+class SceneExtent:
+    """What is asked of a scene's geometry in each frame, found once."""
+
+    low: FloatArray
+    high: FloatArray
+    triangles: int
+
+    @classmethod
+    def of(cls, scene: Scene) -> SceneExtent:
+        """Of a scene as it was opened."""
+        return cls(*scene.bounds(), scene.triangle_count)
+
+    @property
+    def diagonal(self) -> float:
+        """Length, m."""
+        return float(np.linalg.norm(self.high.astype(np.float64) - self.low))
+
+
 def scene_page(
     w: Widgets,
     scene: Scene,
+    extent: SceneExtent,
     state: State,
     selection: Selection | None,
     searched: str,
@@ -27,9 +49,8 @@ def scene_page(
 ) -> str:
     """Draw the page; ``choose`` is called with what was clicked. Returns what is searched for."""
     searched = w.search("search", searched)
-    low, high = scene.bounds()
-    size = " x ".join(f"{extent:.3g}" for extent in high - low)
-    w.text(f"{scene.triangle_count:,} triangles, {size} m", theme.MUTED)
+    size = " x ".join(f"{side:.3g}" for side in extent.high - extent.low)
+    w.text(f"{extent.triangles:,} triangles, {size} m", theme.MUTED)
     branches: tuple[tuple[str, Kind, str, Sequence[str]], ...] = (
         ("Volumes", "volume", icons.VOLUME, [volume.name for volume in state.volumes]),
         ("Lights", "light", icons.LAMP, [light.name for light in state.lights]),

@@ -1,0 +1,48 @@
+"""Reading the desk's scene again: because its file changed, or a setting that it is read by."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from elemental.core.errors import InputError
+from elemental.session import Viewpoint, set_stage
+from elemental.ui.editor import Applied, document_of, reopening_words
+
+if TYPE_CHECKING:
+    from elemental.ui.desk import Desk
+
+
+def reload(desk: Desk) -> None:
+    """Take over the scene's file; a broken one is reported and the old one stays."""
+    words = desk.words
+    try:
+        stage = set_stage(words.scene, words.assignments, Viewpoint(), desk.renderer.size)
+    except InputError as error:
+        desk.say(str(error), "error")
+        return
+    desk.show(stage)
+    desk.document = document_of(stage)
+    desk.applied = Applied(desk.renderer, desk.document.state)
+    desk.say(f"reloaded {stage.scene.name}")
+
+
+def reopen(desk: Desk) -> None:
+    """Read the scene by the document's settings; an edit that can't be had is taken back."""
+    document = desk.document
+    settings = document.state.settings
+    try:
+        stage = set_stage(
+            desk.words.scene, reopening_words(settings), Viewpoint(), desk.renderer.size
+        )
+    except InputError as error:
+        desk.say(str(error), "error")
+        document.refuse()
+        desk.applied.state = document.state
+        desk.renderer.set_settings(document.state.settings)
+        return
+    desk.show(replace(stage, settings=settings))
+    read = document_of(stage).state
+    if len(read.lights) != len(document.state.lights):  # the default sun comes and goes
+        document.follow_lights(read.lights)
+    desk.applied = Applied(desk.renderer, replace(read, settings=settings))
