@@ -23,6 +23,7 @@ from elemental.session import (
     open_scene,
     set_stage,
 )
+from elemental.settings import Settings
 from gltf_builder import GltfBuilder
 
 
@@ -62,8 +63,29 @@ def test_the_exposure_of_a_bright_sun_is_noted_unless_another_is_asked_for(tmp_p
     assert settings["exposure"] == -15.0
     reason = "a sun of 100000 lux: exposure -15 EV; --set exposure=EV changes it"
     assert scene.notes == [f"{path}: {reason}"]
+    assert bounds(settings) == (1.0, 1.0)  # in lux the eye's own bounds mean nothing
     scene, settings = open_scene(str(path), ["exposure=-12"])
     assert (settings["exposure"], scene.notes) == (-12.0, [])
+
+
+def bounds(settings: Settings) -> tuple[float, float]:
+    """What the eye adapts between, nit; equal: it does not. # PP-08"""
+    low, high = (settings[f"eye_adaptation.{end}_brightness"] for end in ("min", "max"))
+    return low, high
+
+
+def test_the_eye_adapts_unless_a_scene_states_its_exposure(tmp_path: Path) -> None:
+    path = write_corner(tmp_path)
+    assert bounds(open_scene(str(path), ())[1]) == (0.03, 2.0)
+    file = tmp_path / "stated.toml"
+    model = f'[[models]]\nfile = "{path.name}"\n'
+    file.write_text("exposure_ev = 0.0\n" + model)
+    assert bounds(open_scene(str(file), ())[1]) == (1.0, 1.0)
+    own = '[settings]\n"eye_adaptation.min_brightness" = 0.5\n'
+    file.write_text("exposure_ev = 0.0\n" + own + model)
+    assert bounds(open_scene(str(file), ())[1]) == (0.5, 1.0)
+    asked = ["eye_adaptation.max_brightness=4"]
+    assert bounds(open_scene(str(file), asked)[1]) == (0.5, 4.0)
 
 
 def test_settings_lie_in_layers(tmp_path: Path) -> None:
