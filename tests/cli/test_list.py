@@ -13,6 +13,7 @@ import pytest
 from cli.process import APP, assert_refused, elemental
 from cli.small_scene import corner, write_corner
 from elemental.flags import build_parser
+from elemental.scene.definitions import builtin, definition_names
 from elemental.settings import SETTINGS
 from elemental.ui.bindings import BINDINGS
 
@@ -31,6 +32,18 @@ def test_settings_bindings_and_views_have_a_line_each() -> None:
     ]
     views = [line.split(maxsplit=1) for line in lines("list", "views")]
     assert all(len(line) == 2 for line in views)
+
+
+def test_materials_stand_over_their_parameters() -> None:
+    told = lines("list", "materials")
+    heads = [line.partition(":")[0] for line in told if not line.startswith(" ")]
+    assert heads == definition_names()
+    for name in heads:
+        at = next(k for k, line in enumerate(told) if line.startswith(f"{name}:"))
+        for k, parameter in enumerate(builtin(name).parameters):
+            words = told[at + 1 + k].split()
+            assert words[:2] == [parameter.name, parameter.kind]
+            assert told[at + 1 + k].endswith(parameter.help)
 
 
 def test_scenes_and_cameras_can_be_named(tmp_path: Path) -> None:
