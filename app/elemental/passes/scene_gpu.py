@@ -2,46 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from elemental.core.layout import Block
 from elemental.gpu.device import Device
-from elemental.gpu.encode import Encoder
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import Ref
-from elemental.gpu.resources import Buffer
-from elemental.passes import material_pack, scene_pack
-from elemental.passes.culling import Culling
+from elemental.passes import material_pack
 from elemental.passes.instance_table import Change, InstanceTable
-from elemental.passes.material_pack import ALL_SLOTS, CATEGORIES, SLOTS
 from elemental.passes.material_table import MaterialTable
 from elemental.passes.material_textures import MaterialTextures
-from elemental.passes.placed import Placed
 from elemental.passes.scene_displace import displacements
+from elemental.passes.scene_draws import SceneDraws
 from elemental.passes.scene_geometry import SceneGeometry
-from elemental.passes.scene_pack import BLEND, OPAQUE, Array, Batch
-from elemental.passes.triangle_lists import TriangleLists
-from elemental.passes.triangle_order import TriangleOrder
+from elemental.passes.scene_pack import Array, Batch
 from elemental.scene.area_lights import AreaLight
 from elemental.scene.evaluate import Pose
-from elemental.scene.model import AlphaMode, Material, Scene
+from elemental.scene.model import Material, Scene
 
-INSTANCE_FORMAT = "16f 16f 4u 64x/i"
 RESTLESS_REPAINTS = 2
 """Changes of material after which an instance counts as dynamic."""
-INSTANCE_NAMES = ("a_world_from_local", "a_normal_from_local", "a_instance_words")
-"""Members of struct Instance as attributes; the last holds its four words."""
 
 
-class GpuScene:
+class GpuScene(SceneDraws):
     """A scene's geometry: merged vertex and index buffers drawn indirectly.
 
     `instances` is the storage block of glsl/shared, `materials` has that of the materials. `bounds`
-    is the box in m (min, max) that the scene never leaves. `lists` is what voxelization draws; what
-    `area_lights` emit is left out of the voxels.
+    is the box in m (min, max) that the scene never leaves. What `area_lights` emit is left out of
+    the voxels.
 
     Once a frame `update` takes over a pose, and `deform` bends what it bends. `changes` is then
     what became of the instances since the frame before, and `version` counts the frames with any.
@@ -69,53 +60,12 @@ class GpuScene:
         self._rests = False
         self._arrange()
 
-    def _upload(self, name: str, values: Array, dynamic: bool = False) -> Buffer:
-        return self._device.buffer(f"scene.{name}", values, category="meshes", dynamic=dynamic)
-
     def _spread(self) -> None:
         """Give boxes and bounds the room that materials may displace things into."""
         margins = displacements(self._scene)
         self._table.set_margins(margins)
         low, high = self._scene.bounds()
         self.bounds = (low - margins.max(), high + margins.max())
-
-    def _arrange(self) -> None:
-        """Sort the instances into batches, with all that hangs on their order."""
-        commands, numbers, self._batches = scene_pack.pack_draws(
-            self._scene, self.geometry.packed, self.dynamic
-        )
-        self._textures.upload(self._batches)
-        table = self._table
-        self._culling = Culling(commands, numbers, table.low, table.high, table.visible)
-        self._commands, self._order = commands, numbers
-        self._everything = self._place("everything")
-        self._seen_by: dict[str, Placed] = {}
-        self.lists = TriangleLists(
-            self._device, commands, numbers, self.geometry.indices, self.dynamic
-        )
-        blended = self.batches(BLEND)
-        self._sorted = TriangleOrder(self._device, self._scene, self.geometry, blended)
-        placement = (self.instances, INSTANCE_FORMAT, INSTANCE_NAMES)
-        attributes = [*self.geometry.attributes(), placement]
-        self._listed = self._device.vertex_input(attributes, self.lists.indices)
-
-    def _place(self, name: str) -> Placed:
-        order = self._upload(f"order.{name}", self._order, dynamic=True)
-        position, surface = self.geometry.attributes()
-        instance = (order, "1u/i", ("a_instance",))
-        return Placed(
-            self._upload(f"draws.{name}", self._commands, dynamic=True),
-            order,
-            self._device.vertex_input([position, surface, instance], self.geometry.indices),
-            self._device.vertex_input([position, instance], self.geometry.indices),
-        )
-
-    def _release_order(self) -> None:
-        for placed in (self._everything, *self._seen_by.values()):
-            placed.release()
-        self._listed.release()
-        self._sorted.release()
-        self.lists.release()
 
     def release(self) -> None:
         """Free everything."""
@@ -216,48 +166,6 @@ class GpuScene:
         """The uniform blocks of every pass that draws meshes with their materials."""
         return self.materials.params()
 
-    def look(self, viewer: str, clip_from_world: Array) -> None:
-        """Leave out of the draws `seen_by` this viewer what its (4, 4) matrix can't see."""
-        changed = self._culling.look(viewer, clip_from_world)
-        if changed is not None:
-            commands, order = changed
-            if viewer not in self._seen_by:
-                self._seen_by[viewer] = self._place(viewer)
-            self._seen_by[viewer].commands.write(commands)
-            self._seen_by[viewer].order.write(order)
-
-    def _placed(self, viewer: str | None) -> Placed:
-        return self._everything if viewer is None else self._seen_by[viewer]
-
-    def batches(
-        self, alpha_modes: Collection[AlphaMode], dynamic: bool | None = None
-    ) -> list[Batch]:
-        """The batches of these alpha modes; `dynamic` keeps those that can, or can't, move."""
-        wanted = (True, False) if dynamic is None else (dynamic,)
-        return [
-            batch
-            for batch in self._batches
-            if batch.alpha_mode in alpha_modes and batch.dynamic in wanted
-        ]
-
-    def back_to_front(self, eye: Array, clip_from_world: Array) -> list[Batch]:
-        """The blended batches in sight, one an instance, by the distance of its centre to eye (3,).
-
-        clip_from_world (4, 4): the viewer's. `draw_sorted` then draws their triangles in that order
-        too.
-        """
-        batches = self.batches(BLEND)
-        if not batches:
-            return []
-        seen = self._culling.visible(clip_from_world)
-        distance = np.linalg.norm(self._culling.centers - eye, axis=1)
-        shown = [batch for batch in batches if seen[batch.instance]]
-        for batch in shown:
-            if batch.instance in self._sorted:
-                row = self._table.rows[batch.instance]
-                self._sorted.sort(batch.instance, row["world_from_local"].T, eye)
-        return sorted(shown, key=lambda batch: float(distance[batch.instance]), reverse=True)
-
     def box(self, instance: int) -> tuple[Array, Array]:
         """World-space (low, high), each (3,) m, of an instance now."""
         return self._table.low[instance], self._table.high[instance]
@@ -266,82 +174,3 @@ class GpuScene:
         """Whether what is behind a blended batch is seen through it, bent and tinted."""
         mesh = self._scene.meshes[self._scene.instances[batch.instance].mesh]
         return self._scene.materials[mesh.material].transmits
-
-    def draw(
-        self,
-        encoder: Encoder,
-        batches: Iterable[Batch],
-        *,
-        texture_mask: int = ALL_SLOTS,
-        cull: bool = True,
-        seen_by: str | None = None,
-    ) -> None:
-        """Draw batches with every attribute.
-
-        `texture_mask`: the shader's MATERIAL_TEXTURES. `cull` hides the back faces of single-sided
-        materials; without it the pass's state stays. `seen_by`: a viewer given to `look`.
-        """
-        placed = self._placed(seen_by)
-        for batch in self.textured(encoder, batches, texture_mask):
-            if cull:
-                encoder.set(cull="none" if batch.double_sided else "back")
-            encoder.draw_indirect(placed.vertices, placed.commands, batch.count, batch.first)
-
-    def draw_sorted(self, encoder: Encoder, batches: Iterable[Batch], seen_by: str) -> None:
-        """Draw batches of `back_to_front`, culling left as it is."""
-        placed = self._placed(seen_by)
-        for batch in self.textured(encoder, batches):
-            if batch.instance in self._sorted:
-                self._sorted.draw(encoder, batch.instance)
-            else:
-                encoder.draw_indirect(placed.vertices, placed.commands, batch.count, batch.first)
-
-    def draw_listed(
-        self, encoder: Encoder, batches: Iterable[Batch], view: int, *, texture_mask: int
-    ) -> None:
-        """Draw what `lists` holds of the batches for a view, culling left as it is.
-
-        The instance comes as the attributes INSTANCE_NAMES. The pass names the lists' commands and
-        indices in ``uses``.
-        """
-        for batch in self.textured(encoder, batches, texture_mask):
-            instances = self._culling.instances_of(batch)
-            first = self.lists.first_command(view) + instances.start
-            encoder.draw_indirect(self._listed, self.lists.commands, len(instances), first)
-
-    def hold_textures(self, batches: Collection[Batch]) -> None:
-        """Make the textures of batches that others draw."""
-        self._textures.upload(batches)
-
-    def textured(
-        self, encoder: Encoder, batches: Iterable[Batch], texture_mask: int = ALL_SLOTS
-    ) -> Iterator[Batch]:
-        """Each batch, once its textures are bound."""
-        bound: dict[str, int] = {}
-        for batch in batches:
-            for index, (slot, texture) in enumerate(zip(SLOTS, batch.textures, strict=True)):
-                if texture_mask >> index & 1 and bound.get(slot) != texture:
-                    encoder.bind(f"u_{slot}_texture", self._textures.sampled(slot, texture))
-                    bound[slot] = texture
-            for own in batch.own_textures:
-                encoder.bind(f"u_{own.name}", self._textures.own(own))
-            yield batch
-
-    def draw_positions(
-        self,
-        encoder: Encoder,
-        alpha_modes: Collection[AlphaMode] = OPAQUE,
-        *,
-        dynamic: bool | None = None,
-        seen_by: str | None = None,
-    ) -> None:
-        """Draw with the attributes a_position and a_instance only, culling left as it is.
-
-        `dynamic` as for `batches`.
-        """
-        placed = self._placed(seen_by)
-        for mode in CATEGORIES:
-            batches = self.batches((mode,), dynamic) if mode in alpha_modes else []
-            if batches:
-                count, first = sum(batch.count for batch in batches), batches[0].first
-                encoder.draw_indirect(placed.positions_only, placed.commands, count, first)
