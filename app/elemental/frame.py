@@ -185,9 +185,10 @@ class Renderer:
             self._voxels = None
 
     def problems(self) -> list[str]:
-        """What is wrong with the materials, a line each: code that does not compile, values that
-        are no numbers; as far as the GPU has told."""
-        return [*self.device.library.problems(), *self._meshes.materials.faults()]
+        """What is wrong with materials and effects, a line each: code that does not compile, values
+        that are no numbers, textures that can't be loaded; as far as the GPU has told."""
+        own = (*self._meshes.materials.faults(), *self._post.problems())
+        return [*self.device.library.problems(), *own]
 
     def set_regions(self, regions: Sequence[Region]) -> None:
         """Replace the scene's regions, and with them leaf levels, from the next frame on."""

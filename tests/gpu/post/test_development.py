@@ -128,7 +128,7 @@ def test_a_bad_table_is_refused_before_the_first_frame(
     room = darkroom()
     room.set(color_grading__lut=str(tmp_path / "none.cube"))
     plain = room.develop(flat(4, 4, 0.5))  # in a running frame the effect goes without
-    assert len(room.history.textures.problems) == 1
+    assert room.history.problems() == [f"{tmp_path / 'none.cube'}: does not exist"]
     np.testing.assert_array_equal(plain, darkroom().develop(flat(4, 4, 0.5)))
 
 

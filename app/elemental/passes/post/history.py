@@ -35,6 +35,7 @@ class PostHistory:
         self.textures.mask(settings["bloom.dirt_mask"])
         self.textures.mask(settings["lens_flare.bokeh_shape"])
         for problem in self.textures.problems.values():
+            self.release()
             raise problem
 
     def advance(self, view: Block) -> None:
@@ -61,6 +62,10 @@ class PostHistory:
         at = len(raw) - view.itemsize
         self.eye.restore(raw[: max(at, 0)])
         self._last_view = np.frombuffer(raw, view, offset=at)[0]
+
+    def problems(self) -> list[str]:
+        """Textures that a frame's settings named and that could not be loaded, a line each."""
+        return [str(problem) for problem in self.textures.problems.values()]
 
     def release(self) -> None:
         """Free everything on the device."""
