@@ -26,6 +26,17 @@ PLAIN_TEXTURES: Mapping[str, tuple[int, int, int, int]] = {
     "flat": (128, 128, 255, 255),
 }
 """Textures of one RGBA8 texel; "flat" is the normal map of a plane."""
+_WORDS = """
+active asm attribute bool break buffer case centroid class coherent common const continue default
+discard do double else enum extern external false filter fixed flat float for goto half highp if
+image in inline input inout int interface invariant layout long lowp mat2 mat3 mat4 mediump
+namespace noinline none noperspective out output packed partition patch precise precision public
+readonly resource restrict return sample sampler shared short sizeof smooth static struct
+subroutine superp switch template this true typedef uint uniform union unsigned using varying vec2
+vec3 vec4 void volatile while writeonly
+"""
+GLSL_WORDS = frozenset(_WORDS.split())
+"""Names that no parameter may have: words of GLSL, of a driver's own dialect, or of ours."""
 LARGEST = 1e9
 """Bound of a number without a range of its own."""
 LARGEST_INTEGER = 1 << 24
@@ -111,8 +122,7 @@ def read_parameter(name: str, table: object, file: object) -> Parameter:
 
     if not isinstance(table, dict):
         raise refuse("", "should be a table")
-    if not (name.isidentifier() and name.isascii() and "__" not in name):
-        raise refuse("", "is no name: letters, digits and single underscores")
+    _check_name(name, str(file), field)
     left = dict(table)
     kind = left.pop("type", None)
     if kind not in get_args(ParameterKind):
@@ -146,3 +156,14 @@ def read_parameter(name: str, table: object, file: object) -> Parameter:
     return Parameter(
         name, kind, default, float(low), float(high), texts["unit"], texts["help"], srgb
     )
+
+
+def _check_name(name: str, file: str, field: str) -> None:
+    """Raises InputError(file, field, reason) for what can be no name in GLSL."""
+    reason = ""
+    if name in GLSL_WORDS or name.startswith("gl_"):
+        reason = "is a word of GLSL"
+    elif not (name.isidentifier() and name.isascii() and "__" not in name):
+        reason = "is no name: letters, digits and single underscores"
+    if reason:
+        raise InputError(file, field, reason)

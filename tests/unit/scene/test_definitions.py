@@ -130,6 +130,7 @@ def test_values_that_a_new_definition_does_not_know_are_dropped(tmp_path: Path) 
         (("min = 1, max = 9", "min = 9, max = 1"), "steps.max: is not greater than min"),
         (('"grey"', '"gray"'), "parameters.mask.default: should be one of white"),
         (("amount =", "a__b ="), "parameters.a__b: is no name"),
+        (("amount =", "sample ="), "parameters.sample: is a word of GLSL"),
         (('roughness = { type = "float"', 'roughness = { type = "int"'), "should be float"),
         (("wet = { type", "wet = { kind"), "parameters.wet.type: should be one of"),
     ],
