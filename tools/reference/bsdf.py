@@ -2,8 +2,9 @@
 
 Ours (glsl/lib/material.glsl): a Lambertian lobe base·(1 - metallic) plus a specular lobe whose
 reflectance at normal incidence is mix(0.04, base, metallic), added without taking energy from the
-first but where both would return more than arrives. Mitsuba has no sum of two BSDFs, so a `blendbsdf` of weight 1/2 mixes both lobes at twice
-their reflectance, which its importance sampling handles without bias:
+first but where both would return more than arrives. Mitsuba has no sum of two BSDFs, so a
+`blendbsdf` of weight 1/2 mixes both lobes at twice their reflectance, which its importance sampling
+handles without bias:
 
 - `diffuse` with 2·base·(1 - metallic)
 - `blendbsdf` over metallic of
