@@ -85,7 +85,8 @@ def draw(
     device: Device, world: Scene, eye: Camera = ABOVE, size: tuple[int, int] = SIZE, **changes: Any
 ) -> tuple[dict[str, int], dict[str, Array]]:
     """(counters, pictures (H, W, 3) float32 by view: specular_gi, specular_traced, final, …)."""
-    settings = {"gi.resolution": 64, "gi.diffuse_cones": 9, **changes}
+    # The blur would even out normals that differ from pixel to pixel.
+    settings = {"gi.resolution": 64, "gi.diffuse_cones": 9, "gbuffer.blur": False, **changes}
     renderer = Renderer(device, world, Settings(settings), size)
     pictures = {}
     for view in ("specular_gi", "specular_traced", "scene_color", "final"):
