@@ -173,3 +173,24 @@ def test_the_default_sun_comes_and_goes(hands: Hands, scene_file: Path) -> None:
     robot.desk.act("undo")
     robot.frames(2)
     assert np.array_equal(robot.pixels(), before)
+
+
+def test_a_file_is_found_by_a_dialog(hands: Hands, scene_file: Path) -> None:
+    robot = hands(scene_file)
+    looks = scene_file.parent / "looks"
+    looks.mkdir()
+    lines = "\n".join(f"{r} {g} {b}" for b in (0, 1) for g in (0, 1) for r in (0, 1))
+    (looks / "plain.cube").write_text(f"LUT_3D_SIZE 2\n{lines}\n")
+    (looks / "notes.txt").write_text("no look")
+    find(robot, "color_grading.lut")
+    robot.click("browse color_grading.lut")
+    robot.frames(2)
+    robot.click("dialog/looks")
+    robot.frames(2)
+    assert not robot.sees("dialog/notes.txt")
+    robot.click("dialog/plain.cube")
+    robot.click("dialog/Open")
+    robot.frames(2)
+    assert robot.setting("color_grading.lut") == str(looks / "plain.cube")
+    robot.desk.act("undo")
+    assert robot.setting("color_grading.lut") == ""

@@ -30,7 +30,9 @@ def test_the_folder_is_the_platforms(monkeypatch: pytest.MonkeyPatch, tmp_path: 
 
 def test_what_is_saved_is_loaded(tmp_path: Path) -> None:
     file = tmp_path / "made" / "panel.json"
-    kept = Preferences(layout="[Window][Settings]\nPos=1,2", scale=1.5, shows_panel=False)
+    kept = Preferences(
+        layout="[Window][Settings]\nPos=1,2", scale=1.5, shows_panel=False, hidden=["Log"]
+    )
     save(file, kept)
     assert load(file) == kept
     assert load(tmp_path / "missing.json") == Preferences()
@@ -49,7 +51,7 @@ JSON = st.recursive(
         st.binary().map(lambda raw: raw),
         JSON.map(lambda value: json.dumps(value).encode()),
         st.fixed_dictionaries(
-            {"version": st.just(1), "layout": JSON, "scale": JSON, "shows_panel": JSON}
+            {"version": st.just(1), "layout": JSON, "scale": JSON, "hidden": JSON}
         ).map(lambda value: json.dumps(value).encode()),
     )
 )
@@ -62,3 +64,4 @@ def test_any_file_gives_usable_preferences(
     assert isinstance(found.layout, str)
     assert 0.5 <= found.scale <= 4.0
     assert isinstance(found.shows_panel, bool)
+    assert all(isinstance(name, str) for name in found.hidden)

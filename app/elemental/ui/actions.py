@@ -24,6 +24,9 @@ from elemental.ui.sequence_job import SequenceJob, staged
 if TYPE_CHECKING:
     from elemental.ui.desk import Desk
 
+IMAGES = (".png", ".jpg", ".jpeg", ".webp", ".exr", ".hdr")
+FILE_SUFFIXES = {"sky.image": (".hdr", ".exr"), "color_grading.lut": (".cube",)}
+"""Of the files that a setting takes, where not any image."""
 PAGE_OF = {"volume": "Volumes", "light": "Lights", "material": "Materials"}
 """The page on which a kind of thing is changed."""
 
@@ -149,6 +152,25 @@ def _screenshot(desk: Desk) -> None:
         desk.say(str(error), "error")
     else:
         desk.say(f"wrote {path}")
+
+
+def browse(desk: Desk) -> None:
+    """Open the dialog in which a row's file is chosen."""
+    widgets = desk.workspace.widgets
+    asked, widgets.browsing = widgets.browsing, None
+    if asked is None:
+        return
+    key, setting, value = asked
+    folder = desk.stage.scene.path.resolve().parent
+    start = Path(value).resolve() if value else folder
+    if not start.exists():
+        start = folder
+
+    def take(path: Path) -> None:
+        widgets.browsed[key] = str(path)
+
+    suffixes = FILE_SUFFIXES.get(setting.key, IMAGES)
+    desk.dialog = FileDialog(f"Choose a file: {setting.key}", start, suffixes, False, take)
 
 
 def _start_sequence(desk: Desk) -> None:

@@ -108,6 +108,7 @@ class Desk:
         self._message, self._message_until = "", 0.0
         gui.scale = preferences.scale
         self.workspace = Workspace(Widgets(gui.fonts, records), pages_of(self), preferences.layout)
+        self.workspace.hidden.update(preferences.hidden)
         self._is_shown = False
         """Whether the panel has been drawn: before, it settles unseen."""
         self._log_scene()
@@ -120,6 +121,7 @@ class Desk:
             scale=self.gui.scale,
             shows_panel=self.shows_panel,
             shows_hud=self.shows_hud,
+            hidden=sorted(self.workspace.hidden),
         )
 
     @property
@@ -211,6 +213,8 @@ class Desk:
             overlays(self, place)
             if self.dialog is not None and self.dialog.draw(self.workspace.widgets):
                 self.dialog = None
+            if self.workspace.widgets.browsing is not None:
+                actions.browse(self)
             self.gui.end()
             if self._is_shown or not self.shows_panel or self.workspace.is_settled:
                 break

@@ -133,6 +133,7 @@ def draw_gizmo(lens: Lens, volume: Volume, mode: str) -> Volume | None:
     gizmo.set_drawlist(imgui.get_background_draw_list())
     gizmo.set_rect(left, top, right - left, bottom - top)
     gizmo.set_orthographic(False)
+    gizmo.allow_axis_flip(False)
     held = _matrix(placement(volume))
     frame = gizmo.MODE.world if mode == "Move" else gizmo.MODE.local
     used = gizmo.manipulate(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +27,8 @@ class Preferences:
     scale: float = 1.0
     shows_panel: bool = True
     shows_hud: bool = False
+    hidden: list[str] = field(default_factory=list)
+    """Pages that do not show."""
 
 
 def preferences_file() -> Path:
@@ -44,12 +46,14 @@ def load(path: Path) -> Preferences:
     if not isinstance(held, dict) or held.get("version") != VERSION:
         return default
     values: dict[str, Any] = {}
-    for field in fields(Preferences):
-        value, expected = held.get(field.name), getattr(default, field.name)
+    for kept in fields(Preferences):
+        value, expected = held.get(kept.name), getattr(default, kept.name)
         if isinstance(expected, float) and type(value) is int:
             value = float(value)
+        if isinstance(value, list):
+            value = [item for item in value if isinstance(item, str)]
         if type(value) is type(expected):
-            values[field.name] = value
+            values[kept.name] = value
     found = Preferences(**values)
     lo, hi = SCALE_RANGE
     found.scale = min(max(found.scale, lo), hi) if math.isfinite(found.scale) else 1.0

@@ -42,6 +42,10 @@ class Widgets(Words):
 
     def __init__(self, fonts: Fonts, records: bool = False) -> None:
         super().__init__(fonts, records)
+        self.browsing: tuple[str, Setting, str] | None = None
+        """A row that asks for a file: its page and name, its setting and value."""
+        self.browsed: dict[str, str] = {}
+        """Files that were chosen for rows, until these take them."""
         self._typed: dict[int, str] = {}
         self._row_end = 0.0
 
@@ -134,7 +138,11 @@ class Widgets(Words):
         if setting.kind == "color":
             return self.color(name, value, setting.hi)
         if setting.kind == "text":
-            return self.typed(name, value)
+            return (
+                self.file(name, setting, value)
+                if setting.unit == "file"
+                else (self.typed(name, value))
+            )
         return self.number(name, setting, value)
 
     def number(self, name: str, setting: Setting, value: float) -> Edit | None:
@@ -231,6 +239,20 @@ class Widgets(Words):
                 clipped = np.minimum(linear, top)
                 edit = Edit(tuple(_short(c) for c in clipped), imgui.get_item_id())
             imgui.end_popup()
+        return edit
+
+    def file(self, name: str, setting: Setting, value: str) -> Edit | None:
+        """A file's name to type, and a button to look for it."""
+        spacing = imgui.get_style().item_inner_spacing.x
+        button = imgui.get_font_size() + 2.0 * imgui.get_style().frame_padding.x
+        imgui.set_next_item_width(imgui.calc_item_width() - button - spacing)
+        edit = self.typed(name, value)
+        imgui.same_line(0.0, spacing)
+        key = f"{self.page}/{name}"
+        if self.button(icons.FOLDER, f"browse {name}", help="look for a file"):
+            self.browsing = (key, setting, value)
+        if key in self.browsed:
+            edit = Edit(self.browsed.pop(key))
         return edit
 
     def typed(self, name: str, value: str, hint: str = "") -> Edit | None:

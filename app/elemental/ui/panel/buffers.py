@@ -250,7 +250,7 @@ def _values(w: Widgets, look: Look, inspector: Inspector, size: tuple[int, int])
         if probed is not None:
             x, y = probed.texel
             numbers = probed.words if probed.words is not None else probed.values
-            digits = "  ".join(f"{n:,}" if isinstance(n, int) else f"{n:.9g}" for n in numbers)
+            digits = "  ".join(f"{n:,}" if isinstance(n, int) else f"{n:.6g}" for n in numbers)
             text = f"{shape}   ({x}, {size[1] - 1 - y})   {digits}"
         w.text(text, theme.MUTED)
     w.note("values")

@@ -28,8 +28,8 @@ class FileDialog:
         done: Callable[[Path], None],
     ) -> None:
         self.title, self.suffixes, self.saves, self.done = title, suffixes, saves, done
-        self.folder = start.parent
-        self.name = start.name
+        self.folder = start if start.is_dir() else start.parent
+        self.name = "" if start.is_dir() else start.name
         self._listed: tuple[Path, list[str], list[str]] | None = None
         self._overwrites = False
 
@@ -98,8 +98,8 @@ class FileDialog:
             for name in files:
                 double = imgui.SelectableFlags_.allow_double_click.value
                 if imgui.selectable(f"{icons.FILE}  {name}", name == self.name, double)[0]:
+                    chosen = name == self.name and imgui.is_mouse_double_clicked(0)
                     self.name, self._overwrites = name, False
-                    chosen = imgui.is_mouse_double_clicked(0)
                 w.note(name)
         imgui.end_child()
         return chosen
