@@ -186,3 +186,19 @@ def test_larger_lights_cast_softer_shadows_of_the_same_area(rig: MakeRig) -> Non
         grey.append(np.mean((got > 0.05) & (got < 0.95)))
     np.testing.assert_allclose(taken, taken[0], rtol=0.06)
     assert grey[0] < grey[1] < grey[2]
+
+
+def test_translucent_surfaces_receive_penumbras(rig: MakeRig) -> None:
+    """A sheet of paper at the floor's place shows the floor's shadow."""
+    paper = material(base_color=vector(1, 1, 1, 0.999), alpha_mode="blend", double_sided=True)
+    solid = material(double_sided=True)
+    pictures = []
+    for floor in (solid, paper):
+        world = scene(
+            (mesh(quad(10.0), 1), IDENTITY),
+            (mesh(quad(4.0)), at(2.0, EDGE, 0)),
+            materials=[solid, floor],
+            lights=[replace(lamp(0.4), intensity=9.0)],
+        )
+        pictures.append(rig(world, HIGH).scene_color()[..., 0])
+    np.testing.assert_allclose(pictures[1], pictures[0], atol=0.02)

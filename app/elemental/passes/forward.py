@@ -38,8 +38,7 @@ VARIANTS = {
     )
     for gi in (0, 1)
     for cells in (ALL_LIGHTS, VIEW_CELLS)
-    for glass in (0, 1)
-    for soft in (0, 1)
+    for glass, soft in ((0, 0), (0, 1), (1, 0))
 }
 """Of glTF's material."""
 
@@ -97,7 +96,7 @@ def draw_translucent(
         return gb.scene_color
     reads: dict[str, Ref] = {
         **scene.reads(),
-        **shadows.view_reads(),
+        **shadows.light_reads(),
         **cells.reads(),
         **sky.reads(),
     }
@@ -107,13 +106,15 @@ def draw_translucent(
         reads |= octree.tracing_reads()
         blocks += [octree.params, {"AreaLights": area_lights}]
     params = {"View": view, **{name: block for some in blocks for name, block in some.items()}}
-    gi, soft = int(gathered is not None), int(shadows.soft)
-    defines = {"GI": gi, "LIGHT_CELLS": cells.kind, "SOFT_SHADOWS": soft}
+    defines = {"GI": int(gathered is not None), "LIGHT_CELLS": cells.kind}
 
     def key(layer: Layer) -> tuple[Raster, RasterState, int]:
-        glass = {"TRANSMISSION": int(layer.grab >= 0)}
+        # Glass keeps hard shadows: with what is behind it the 16 textures that every driver has
+        # may all be taken.
+        glass = layer.grab >= 0
+        own = {"TRANSMISSION": int(glass), "SOFT_SHADOWS": int(shadows.soft and not glass)}
         shader = material_shader(
-            VERT, FRAG, layer.batch, defines | glass, texture_mask=ALL_SLOTS, uv_transforms=True
+            VERT, FRAG, layer.batch, defines | own, texture_mask=ALL_SLOTS, uv_transforms=True
         )
         return shader, layer.state, layer.grab
 
@@ -130,7 +131,7 @@ def draw_translucent(
             shader,
             state,
             batches,
-            reads if grab < 0 else _with(reads, behind),
+            reads | shadows.view_reads() if grab < 0 else _with(reads, behind),
             params,
         )
     return gb.scene_color
