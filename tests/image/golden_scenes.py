@@ -11,10 +11,11 @@ import numpy.typing as npt
 from elemental.core import transforms
 from elemental.frame import Renderer
 from elemental.gpu.device import Device
+from elemental.scene.ies import LightProfile
 from elemental.scene.model import Camera, Decal, Environment, Instance, Light, Scene
 from elemental.scene.scene_decals import box_matrix
 from elemental.settings import Settings
-from gpu.rig import at, material, scene, sun, vector
+from gpu.rig import IDENTITY, at, material, scene, sun, vector
 from gpu.voxel.scenes import colored, glowing, part, turned
 from shapes import box, quad, sphere, torus
 
@@ -118,6 +119,29 @@ def stained_room() -> Scene:
     return made
 
 
+def lamplit_corner() -> Scene:
+    """Nine lights, so that they are culled: small ones by their ranges, a warm bulb with penumbras,
+    and a wall washer with a profile, in a budget that has them share layers of shadow maps."""
+    made = spotlit_corner()
+    made.instances.append(Instance("ball", len(made.meshes), at(-0.3, -0.6, -0.2)))
+    made.meshes.append(part(sphere(0.3), 0, IDENTITY, smooth=True)[0])
+    angles = np.radians([0.0, 20.0, 40.0, 90.0, 180.0])
+    candela = np.array([[40.0, 20.0, 2.0, 0.0, 0.0]])
+    white, down = vector(1, 1, 1), vector(0, -1, 0)
+    bulb = Light("bulb", "point", white, 1.5, vector(0.3, 0.1, 0.4), down,
+                 source_radius=0.12, temperature=2700.0)  # fmt: skip
+    washer = Light("washer", "point", white, 4.0, vector(0.3, 0.95, -1.15), down,
+                   profile=LightProfile("washer", angles, np.zeros(1), candela))  # fmt: skip
+    colors = [vector(1, 0.2, 0.1), vector(0.1, 0.4, 1), vector(0.2, 1, 0.3)]
+    small = [
+        Light(f"small {k}", "point", colors[k % 3], 0.12,
+              vector(-1.0 + 0.35 * k, -0.75, 0.9 - 0.1 * k), down, range=0.7)
+        for k in range(7)
+    ]  # fmt: skip
+    made.lights = [bulb, washer, *small]
+    return made
+
+
 LENS: dict[str, Any] = {
     "eye_adaptation.min_brightness": 0.03,
     "eye_adaptation.max_brightness": 2.0,
@@ -142,6 +166,7 @@ SCENES: dict[str, tuple[Callable[[], Scene], dict[str, Any]]] = {
     "colored_room_bounces": (colored_room, {"gi.bounces": 3}),
     "sunlit_plaza": (sunlit_plaza, {}),
     "spotlit_corner": (spotlit_corner, {"exposure": 1.0}),
+    "lamplit_corner": (lamplit_corner, {"exposure": 1.0, "shadow.budget": 8}),
     "stained_room": (stained_room, {"exposure": 0.5}),
     "colored_room_lens": (colored_room, LENS),
     "sunlit_plaza_lens": (sunlit_plaza, LENS),
