@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import statistics
 from collections.abc import Callable
 from pathlib import Path
 
@@ -9,7 +10,9 @@ import numpy as np
 import pytest
 from imgui_bundle import imgui
 
+import panel_cost
 from elemental.core.images import read_exr
+from elemental.gpu.device import Device
 from ui.robot import Robot
 
 Hands = Callable[..., Robot]
@@ -183,3 +186,16 @@ def test_what_is_hidden_costs_nothing(hands: Hands, scene_file: Path) -> None:
     assert desk.gui.rests  # ImGui itself does not run
     assert desk.renderer.looker is None
     assert not desk.wants_mouse
+
+
+def test_the_panel_costs_at_most_a_fifth_of_a_frame(
+    device: Device, scene_file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At the program's defaults but for a quarter of the window; tools/panel_cost.py has more."""
+    robot = Robot(device, scene_file, "gi.enabled=true", "gi.resolution=64", size=(640, 360))
+    desk = robot.desk
+    robot.frames(3)
+    frames = [panel_cost.frame_ms(desk) for _ in range(5)]
+    _, panel = panel_cost.panel_ms(robot.screen, 5)
+    robot.screen.release()
+    assert panel < 0.25 * statistics.median(frames)  # a fifth of both together

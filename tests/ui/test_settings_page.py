@@ -194,3 +194,18 @@ def test_a_file_is_found_by_a_dialog(hands: Hands, scene_file: Path) -> None:
     assert robot.setting("color_grading.lut") == str(looks / "plain.cube")
     robot.desk.act("undo")
     assert robot.setting("color_grading.lut") == ""
+
+
+def test_unsaved_edits_are_dropped_only_when_asked_twice(hands: Hands, scene_file: Path) -> None:
+    robot = hands(scene_file)
+    asked: list[str] = []
+    robot.desk.window_acts = asked.append
+    robot.desk.document.set("exposure", 2.0)
+    robot.desk.act("reload")
+    assert robot.setting("exposure") == 2.0
+    assert "unsaved" in robot.desk.message
+    robot.desk.act("reload")
+    assert robot.setting("exposure") == 0.25
+    robot.desk.act("quit")
+    assert asked == ["quit"]
+    assert robot.desk.may_lose_edits("Esc")  # nothing is unsaved any more

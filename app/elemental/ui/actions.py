@@ -55,7 +55,8 @@ def _act_on_picture(desk: Desk, verb: str, word: str, index: int, shift: bool) -
         case "sequence.stop" if desk.job is not None:
             desk.job.stop()
         case "reload":
-            reopening.reload(desk)
+            if desk.may_lose_edits("R"):
+                reopening.reload(desk)
         case "view.next":
             desk.next_view(-1 if shift else 1)
         case "view":

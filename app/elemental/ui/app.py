@@ -100,7 +100,11 @@ class App:
     def loop(self) -> None:
         """Draw frames until the end; a minimised window waits for events instead."""
         before = time.perf_counter()
-        while not self.window.should_close() and self.desk.drawn != self.words.frames:
+        while self.desk.drawn != self.words.frames:
+            if self.window.should_close():
+                if self.desk.may_lose_edits("closing"):
+                    break
+                self.window.stay()
             size = self.window.framebuffer_size()
             hidden = 0 in size
             events = self.window.poll(HIDDEN_WAIT_S if hidden else 0.0)
@@ -149,7 +153,8 @@ class App:
             case "fullscreen":
                 self.window.toggle_fullscreen()
             case "quit" | "close":
-                self.window.close()
+                if self.desk.may_lose_edits("Esc"):
+                    self.window.close()
 
     def _fly(self, frame_s: float) -> None:
         held, fly = self.window.held, self.desk.fly

@@ -106,6 +106,7 @@ class Desk:
         self.gui_ms = self.layout_ms = 0.0
         """Time of Python and of the driver's calls for the panel; for its widgets alone."""
         self._message, self._message_until = "", 0.0
+        self._sure_until = 0.0
         gui.scale = preferences.scale
         self.workspace = Workspace(Widgets(gui.fonts, records), pages_of(self), preferences.layout)
         self.workspace.hidden.update(preferences.hidden)
@@ -255,6 +256,14 @@ class Desk:
     def save_to(self, path: Path) -> None:
         """Write the scene's file."""
         actions.save_to(self, path)
+
+    def may_lose_edits(self, how: str) -> bool:
+        """Whether to go on with what drops the document: asked twice where that is unsaved."""
+        if not self.document.would_be_lost or time.perf_counter() < self._sure_until:
+            return True
+        self._sure_until = time.perf_counter() + MESSAGE_S
+        self.say(f"unsaved edits would be lost: Ctrl+S saves them, {how} again drops them")
+        return False
 
     # What is said ------------------------------------------------------------------------------
 

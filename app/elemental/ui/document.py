@@ -52,6 +52,11 @@ class Document:
         return not same(self.state, self.saved)
 
     @property
+    def would_be_lost(self) -> bool:
+        """Whether there is work of the user's that is not on disk."""
+        return bool(self._undo or self._redo) and self.unsaved
+
+    @property
     def in_gesture(self) -> bool:
         """Whether the newest step may still grow: a slider is held."""
         return self._gesture is not None

@@ -132,6 +132,10 @@ class Window:
         """Ask for the end."""
         glfw.set_window_should_close(self.handle, True)
 
+    def stay(self) -> None:
+        """Take back that the end was asked for."""
+        glfw.set_window_should_close(self.handle, False)
+
     def swap(self) -> None:
         """Show what was drawn."""
         glfw.swap_buffers(self.handle)

@@ -164,3 +164,19 @@ def test_the_default_sun_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="lights"):
         save_scene(path, path, Changes(lights=([default_sun()], [changed])))
     assert path.read_text() == LAYOUTS["none"]
+
+
+def test_a_save_that_is_cut_short_leaves_the_old_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "a.toml"
+    path.write_text(LAYOUTS["dotted"])
+
+    def killed(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("os.replace", killed)
+    with pytest.raises(KeyboardInterrupt):
+        save_scene(path, path, Changes({"exposure": 1.5}))
+    assert path.read_text() == LAYOUTS["dotted"]
+    assert [file.name for file in tmp_path.iterdir()] == ["a.toml"]
