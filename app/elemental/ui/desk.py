@@ -162,6 +162,9 @@ class Desk:
         laid_out = time.perf_counter()
         if not (self.gui.holds or (has_gui and gizmo_has_mouse())):
             self.document.settle()
+        if self.document.problem is not None:
+            self.say(str(self.document.problem), "error")
+            self.document.problem = None
         self._act_on_menus()
         if self.remote is not None:
             self._take_over_remote(self.remote)

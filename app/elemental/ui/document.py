@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from elemental.core.errors import InputError
 from elemental.scene.model import Light, Material
 from elemental.scene.volumes import Volume
 from elemental.settings import Settings
@@ -45,6 +46,8 @@ class Document:
         self._undo: list[Step] = []
         self._redo: list[Step] = []
         self._gesture: Hashable = None
+        self.problem: InputError | None = None
+        """Why the last ``attempt`` was no edit, until someone tells the user."""
 
     @property
     def unsaved(self) -> bool:
@@ -144,6 +147,13 @@ class Document:
     def mark_saved(self) -> None:
         """The present state is on disk."""
         self.saved = self.state
+
+    def attempt(self, edit: Callable[[], None]) -> None:
+        """Make an edit of what a user typed; one that can't be is a ``problem`` instead."""
+        try:
+            edit()
+        except InputError as error:
+            self.problem = error
 
     # Edits of one part -------------------------------------------------------------------------
 

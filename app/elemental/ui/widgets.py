@@ -165,7 +165,8 @@ class Widgets(Words):
             places = ("%.4g" if wide else f"%.{3 if hi - lo <= 2.0 else 2}f") + unit
             changed, number = imgui.slider_float(f"##{name}", float(value), lo, hi, places, flags)
         self.note(name)
-        return Edit(_short(number, setting.kind), imgui.get_item_id()) if changed else None
+        short = _short(number, setting.kind, lo, hi)
+        return Edit(short, imgui.get_item_id()) if changed else None
 
     def drag(self, name: str, setting: Setting, value: float) -> Edit | None:
         """A number without bounds to slide between: a drag changes it by a hundredth of itself."""
@@ -184,7 +185,8 @@ class Widgets(Words):
                 f"##{name}", float(value), speed, lo, hi, f"%.4g{_unit(setting)}", clamp
             )
         self.note(name)
-        return Edit(_short(number, setting.kind), imgui.get_item_id()) if changed else None
+        short = _short(number, setting.kind, lo, hi)
+        return Edit(short, imgui.get_item_id()) if changed else None
 
     def vector(
         self,
@@ -203,7 +205,9 @@ class Widgets(Words):
         changed, dragged = drag(f"##{name}", list(value), speed, low, high, shown, clamp)
         self.note(name)
         return (
-            Edit(tuple(_short(part) for part in dragged), imgui.get_item_id()) if changed else None
+            Edit(tuple(_short(part, "float", low, high) for part in dragged), imgui.get_item_id())
+            if changed
+            else None
         )
 
     def color(self, name: str, value: Sequence[float], hi: float | None = 1.0) -> Edit | None:
@@ -219,7 +223,7 @@ class Widgets(Words):
         )
         self.note(name)
         if changed:
-            edit = Edit(tuple(_short(c) for c in dragged), imgui.get_item_id())
+            edit = Edit(tuple(_short(c, "float", 0.0, top) for c in dragged), imgui.get_item_id())
         imgui.same_line(0.0, spacing)
         shown = encode_srgb(np.asarray(value, np.float32))
         red, green, blue = (min(float(c), 1.0) for c in shown)
@@ -237,7 +241,9 @@ class Widgets(Words):
             if picked:
                 linear = decode_srgb(np.clip(np.asarray(codes, np.float32), 0.0, None))
                 clipped = np.minimum(linear, top)
-                edit = Edit(tuple(_short(c) for c in clipped), imgui.get_item_id())
+                edit = Edit(
+                    tuple(_short(c, "float", 0.0, top) for c in clipped), imgui.get_item_id()
+                )
             imgui.end_popup()
         return edit
 
@@ -279,6 +285,9 @@ def _unit(setting: Setting) -> str:
     return f" {setting.unit}".rstrip().replace("%", "%%")
 
 
-def _short(number: float, kind: str = "float") -> Any:
-    """ImGui's 32-bit number as one would type it: 0.35, not 0.3499999940395355."""
-    return int(number) if kind == "int" else float(f"{number:.6g}")
+def _short(number: float, kind: str, lo: float, hi: float) -> Any:
+    """ImGui's 32-bit number as one would type it: 0.35, not 0.3499999940395355; inside its range,
+    which ImGui leaves when it rounds to the digits that show."""
+    if kind == "int":
+        return int(min(max(number, lo), hi))
+    return min(max(float(f"{number:.6g}"), lo), hi)

@@ -60,8 +60,12 @@ def materials_page(w: Widgets, chosen: int, document: Document, folder: Path) ->
         kind = w.choose("kind", material.definition.name, names)
         w.hint(material.definition.help)
         if kind != material.definition.name:
-            definition = find_definition(kind, folder, folder, "shader")
-            document.set_material(chosen, material.with_definition(definition))
+
+            def dress() -> None:
+                definition = find_definition(kind, folder, folder, "shader")
+                document.set_material(chosen, material.with_definition(definition))
+
+            document.attempt(dress)
         else:
             for parameter in material.definition.parameters:
                 _row(w, document, chosen, material, saved, parameter)
@@ -106,4 +110,9 @@ def _row(
     else:
         edit = property_row(w, name, label, setting_of(parameter), value, default)
     if edit is not None:
-        document.set_material(index, material.with_value(name, edit.value), edit.gesture)
+        value, gesture = edit
+
+        def change() -> None:
+            document.set_material(index, material.with_value(name, value), gesture)
+
+        document.attempt(change)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 
 from elemental.settings import SETTINGS, Setting
 from elemental.ui.document import Document
@@ -73,4 +74,4 @@ def _row(w: Widgets, document: Document, setting: Setting) -> None:
     value = document.state.settings[setting.key]
     edit = property_row(w, setting.key, label_of(setting), setting, value, setting.default)
     if edit is not None:
-        document.set(setting.key, edit.value, edit.gesture)
+        document.attempt(partial(document.set, setting.key, edit.value, edit.gesture))

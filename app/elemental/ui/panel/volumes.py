@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 from imgui_bundle import imgui
 
 from elemental.scene.model import unique_name
 from elemental.scene.volumes import Vector, Volume
-from elemental.settings import SETTINGS, Setting, Settings
+from elemental.settings import SETTINGS, Setting, Settings, check_override
 from elemental.ui import icons, theme
 from elemental.ui.document import Document
 from elemental.ui.panel.settings import GROUPS, label_of, matches, title_of
@@ -156,8 +157,12 @@ def _overrides(w: Widgets, view: VolumeView, document: Document, volume: Volume)
         for setting in shown:
             overrides = _override_row(w, document.state.settings, volume, setting)
             if overrides is not None:
-                changed = replace(volume, overrides=overrides.value)
-                document.set_volume(view.chosen, changed, overrides.gesture)
+                document.attempt(partial(_override, document, view.chosen, volume, overrides))
+
+
+def _override(document: Document, index: int, volume: Volume, overrides: Edit) -> None:
+    checked = {key: check_override("volumes", key, value) for key, value in overrides.value.items()}
+    document.set_volume(index, replace(volume, overrides=checked), overrides.gesture)
 
 
 def _override_row(w: Widgets, settings: Settings, volume: Volume, setting: Setting) -> Edit | None:
