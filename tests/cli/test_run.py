@@ -91,7 +91,7 @@ stage = set_stage(words.scene, words.assignments, Viewpoint(), words.size)
 app = App(Window(words.size, "elemental"), stage, words)
 drawn = []
 ui.draw_hud = lambda figures, place, fonts: drawn.append(figures.size)
-ui.draw_keys = lambda place: drawn.append("help")
+ui.draw_keys = lambda: drawn.append("help")
 ui.draw_message = lambda text, place: drawn.append(text)
 
 def after(action):

@@ -6,19 +6,14 @@ from dataclasses import replace
 from pathlib import Path
 
 from elemental.core.errors import InputError
-from elemental.frame import Renderer
+from elemental.frame import OCTREE_KEYS, SHADOW_KEYS, Renderer
 from elemental.scene.model import Scene
 from elemental.scene.save_scene import Changes, save_scene
 from elemental.session import Stage, own_settings
 from elemental.settings import SETTINGS, Settings
 from elemental.ui.document import Document, State, same
 
-REBUILDING = frozenset(
-    {
-        "gi.resolution", "gi.memory_budget_mb", "gi.area_lights",
-        "shadow.resolution", "shadow.cascades", "shadow.distance",
-    }
-)  # fmt: skip
+REBUILDING = OCTREE_KEYS | SHADOW_KEYS
 """Settings that wait for the mouse's release: taking one over costs more than a frame."""
 REOPENING = frozenset({"scene.default_lights", "scene.animation", "sky.image"})
 """Settings that the scene is read by."""

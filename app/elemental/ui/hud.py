@@ -83,9 +83,10 @@ def draw_hud(figures: Figures, place: Rect, fonts: Fonts) -> None:
     imgui.end()
 
 
-def draw_keys(place: Rect) -> None:
-    """All bindings, in the middle of the picture's place."""
-    _begin("keys", ((place[0] + place[2]) / 2, (place[1] + place[3]) / 2), (0.5, 0.5))
+def draw_keys() -> None:
+    """All bindings, in the middle of the window: they may need more room than the picture has."""
+    center = imgui.get_main_viewport().get_center()
+    _begin("keys", (center.x, center.y), (0.5, 0.5), 0.97)
     _colored(theme.ACCENT, "Keys")
     _two_columns("bindings", [(binding.keys_text(), binding.help) for binding in BINDINGS])
     imgui.end()
@@ -118,10 +119,15 @@ def draw_message(text: str, place: Rect) -> None:
     imgui.end()
 
 
-def _begin(name: str, place: tuple[float, float], pivot: tuple[float, float]) -> None:
+def _begin(
+    name: str,
+    place: tuple[float, float],
+    pivot: tuple[float, float],
+    opacity: float = BACKGROUND_OPACITY,
+) -> None:
     always = imgui.Cond_.always.value
     imgui.set_next_window_pos(imgui.ImVec2(*place), always, imgui.ImVec2(*pivot))
-    imgui.set_next_window_bg_alpha(BACKGROUND_OPACITY)
+    imgui.set_next_window_bg_alpha(opacity)
     imgui.begin(name, None, _PANEL)
 
 

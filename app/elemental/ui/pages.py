@@ -153,7 +153,7 @@ def overlays(desk: Desk, place: Rect) -> None:
     if desk.shows_hud and not desk.shows_help and desk.frame is not None:
         draw_hud(figures_of(desk), place, desk.gui.fonts)
     if desk.shows_help:
-        draw_keys(place)
+        draw_keys()
     if desk.message:
         draw_message(desk.message, place)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from functools import partial
 
@@ -17,9 +18,12 @@ TITLES = {
     "ao": "Ambient occlusion",
     "lut": "Colour grading",
     "voxels": "Voxel views",
+    "gbuffer": "G-buffer",
+    "ambient_cubemap": "Ambient light",
+    "shading": "",
 }
 """Headings of groups whose name is not a word."""
-FOLDED = frozenset({"voxels", "scene"})
+FOLDED = frozenset({"voxels", "scene", "lights", "shading"})
 """Groups that an artist seldom opens."""
 
 
@@ -56,9 +60,14 @@ def title_of(group: str) -> str:
 
 
 def label_of(setting: Setting) -> str:
-    """A setting's name within its group; the unit stands behind its value."""
-    name = setting.key.rpartition(".")[2].removesuffix("_mb")
-    return name.replace("_", " ").capitalize()
+    """A setting's name within its group, or with it where it is alone there; the unit stands
+    behind its value."""
+    group, dot, name = setting.key.rpartition(".")
+    words = re.sub(r"(?<=[a-z])(?=\d)", " ", name.removesuffix("_mb").replace("_", " "))
+    words = re.sub(r"\blut\b", "LUT", words)
+    if dot and len(GROUPS.get(group, ())) == 1 and title_of(group):
+        return f"{title_of(group)} {words}"
+    return words[0].upper() + words[1:]
 
 
 def matches(setting: Setting, words: list[str]) -> bool:
