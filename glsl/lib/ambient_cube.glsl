@@ -8,42 +8,43 @@ uvec3 sides_seen(vec3 direction) {
     return uvec3(0u, 2u, 4u) + uvec3(greaterThan(direction, vec3(0.0)));
 }
 
-// Squared components of a unit vector sum to one.
-vec3 side_weights(vec3 direction) { return direction * direction; }
+const float COVER_NOISE = 0.003;  // a code: what is below it has no colour of its own
+const float FEW_CODES = 0.03;     // covers of which ratios say little
+// A layer whose normal lies between the axes covers this share of what it hides at least.
+const float LEAST_COVER = 0.5;
 
-const float OPACITY_NOISE = 0.02;  // a few codes: below it, ratios of opacities say nothing
+// What hides, where fronts cover so much of what is opaque: the rest are backs. As much of these as
+// `own` belongs to the surface that the ray leaves, and lets it pass.
+float hidden_share(float cover, float opacity, float own) {
+    return max(min(cover, opacity), opacity - own);
+}
 
-// What a ray along a unit direction sees of three sides: premultiplied radiance and opacity.
+// What a ray along a unit direction sees of three sides: premultiplied radiance and opacity. Of a side,
+// a is what fronts of surfaces cover, rgb their radiance times that; opaque: opacities along the axes.
 //
-// Opacity is what the sides cover as seen along the ray: their areas add by the cosines, not by the
-// squares, which lose it at low angles; no more is hidden than the fullest side hides.
-//
-// Radiance is averaged as its square root, by squared cosines: where the side that a ray meets head-on is
-// dark, what the sides beside it show is mostly of the other face of a wall, and counts little; where all
-// show the same, it counts whole. [inferred: the plain mean lets twice to three times as much of a sunlit
-// outer wall into a closed room]
-vec4 mean_of_sides(vec4 x, vec4 y, vec4 z, vec3 direction) {
-    vec3 covers = vec3(x.a, y.a, z.a);
-    float opacity = min(dot(abs(direction), covers), max(covers.x, max(covers.y, covers.z)));
-    vec3 weights = side_weights(direction);
-    vec3 noisy = covers + OPACITY_NOISE;
-    vec3 root = weights.x * sqrt(x.rgb * noisy.x) + weights.y * sqrt(y.rgb * noisy.y)
-              + weights.z * sqrt(z.rgb * noisy.z);
-    root /= dot(weights, noisy);
-    return vec4(root * root * (opacity + OPACITY_NOISE), opacity);
+// Areas add by the cosines, as projected ones do: radiance is the mean over the fronts that the ray sees,
+// sides that are fuller counting more, since in those that a wall before it crosses edge-on stands what is
+// behind the wall as well. What is hidden is no more than the fullest axis hides. Backs are dark.
+vec4 mean_of_sides(vec4 x, vec4 y, vec4 z, vec3 opaque, vec3 direction, float own) {
+    vec3 cosines = abs(direction);
+    vec3 covers = vec3(x.a, y.a, z.a) + COVER_NOISE;
+    vec3 areas = cosines * covers;
+    float area = areas.x + areas.y + areas.z;
+    float cover = area * area / dot(areas, cosines);
+    vec3 radiance = (areas.x * x.rgb + areas.y * y.rgb + areas.z * z.rgb) / dot(areas, covers);
+    float opacity = min(dot(cosines, opaque), max(opaque.x, max(opaque.y, opaque.z)));
+    float hides = hidden_share(cover, opacity, own);
+    float whole = min((hides + FEW_CODES) / (cover + FEW_CODES), 1.0 / LEAST_COVER);
+    return vec4(radiance * cover * whole, hides);
 }
 
 // A short mean normal says that the voxel's surfaces face several ways.
 float normal_certainty(float squared_length) { return min(squared_length * 4.0, 1.0); }
 
-// Share of a leaf's radiance that a side shows, from the squared length of its mean normal and the
-// cosine between that and the side. A surface shows its radiance to all of the half space before it.
-// A side seen edge-on (cosine 0) serves that half space and the one behind, and gets all of it: see
-// mean_of_sides. sqrt(3) makes the three front sides of a diagonal normal show it whole, its three
-// back sides nothing.
-float side_visibility(float squared_length, float cosine) {
-    float facing = clamp(1.0 + sqrt(3.0) * cosine, 0.0, 1.0);
-    return mix(1.0, facing, normal_certainty(squared_length));
+// Share of a side that a leaf's front covers, from the squared length of its mean normal and the cosine
+// between that and the side.
+float front_share(float squared_length, float cosine) {
+    return mix(1.0, max(cosine, 0.0), normal_certainty(squared_length));
 }
 
 // How many voxels a layer with this mean normal has on the area of one: fewer where the lattice cuts it

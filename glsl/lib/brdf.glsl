@@ -92,3 +92,13 @@ vec3 environment_brdf(vec3 specular_color, float roughness, float n_o_v) {
         + r * (1.073 + s * (25.026 + 2.432 * s) + r * (-9.110 - 15.918 * s + 7.639 * r)));
     return specular_color * max(1.0 - loss - grazing, 0.0) + grazing;
 }
+
+// Share of all light from a hemisphere that such a surface mirrors: the mean of environment_brdf by
+// cosine. loss and grazing are polynomials fitted to the integrals of the above: at most 0.007 and 0.004
+// off.
+vec3 mirrored_share(vec3 specular_color, float roughness) {
+    float r = roughness;
+    float grazing = max(0.0482 + r * (0.0063 + r * (-0.1961 + 0.1479 * r)), 0.0);
+    float loss = r * r * (-0.2676 + r * (2.1065 - 1.2503 * r));
+    return specular_color * (1.0 - loss - grazing) + grazing;
+}

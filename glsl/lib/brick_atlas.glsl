@@ -1,6 +1,7 @@
 // Where bricks' texels stand in the two atlases.
 //
-// Above the finest level a brick is 6 x 3x3x3 texels: radiance and occlusion for each side. The six
+// Above the finest level a brick is 6 x 3x3x3 texels, radiance and cover of each side, and 3x3x3 of
+// opacities along the axes. The six
 // sides of a leaf follow from one radiance and one normal, so the finest level, with three quarters
 // of the bricks, keeps just these: 3x3x3 texels in each of two atlases, a third of the memory.
 // [Mittring12 "Generate directionally dependent voxel: at leaf level from voxel normal"]
@@ -13,7 +14,7 @@ uvec3 atlas_place(uint index, uint side_log2) {
 }
 
 ivec3 brick_texel(uint brick) {
-    uvec3 size = uvec3(BRICK_SIDE, BRICK_SIDE, BRICK_SIDE * BRICK_DIRECTIONS);
+    uvec3 size = uvec3(BRICK_SIDE, BRICK_SIDE, BRICK_SIDE * BRICK_STACKS);
     return ivec3(atlas_place(brick, u_octree.atlas_side_log2) * size);
 }
 

@@ -33,7 +33,7 @@ struct Run {
     float hides;      // share of what arrived at the run
     float arrived;    // share of the cone
 };
-const float FULLEST = 0.7;        // of a layer's opacity that the fullest sample has at least
+const float FULLEST = 0.65;       // of a layer's opacity that the fullest sample has at least
 // Coarse levels' layers are a little thicker than a voxel; the finest level's voxels stand in steps where
 // the lattice cuts a layer at an angle, and a narrow cone meets fewer of them than there are on average.
 const float COARSE_SHARE = 0.84;
@@ -109,7 +109,11 @@ struct Clearance {
     float start;
     float slope;
 };
-const float CLEARANCE_VOXELS = 4.0;
+// More where voxels gather, since each further gather multiplies what is lost.
+#ifndef CLEARANCE
+#define CLEARANCE 4.0
+#endif
+const float CLEARANCE_VOXELS = CLEARANCE;
 // Up to here voxels belong to the surface that a cone leaves, or to one that meets it at an edge: a cone
 // that sees their backs came out of them, and passes.
 const float NEAR_VOXELS = 2.0;
@@ -139,7 +143,7 @@ vec4 cone_trace_between(vec3 Pos, vec3 Direction, float ConeAngle, float start_m
         ++cone_steps;
 #endif
         float height = height_at(leaves, t);
-        view.backs = clamp(min(height, t) - NEAR_VOXELS, 0.0, 1.0);
+        view.own = clamp(NEAR_VOXELS + 1.0 - min(height, t), 0.0, 1.0);
         height = min(height, height_at(reaches, t));
         float width = max(min(widening * t / CONE_FOOTPRINT, height / CLEARANCE_VOXELS), 1.0);
         vec3 p = origin + Direction * t;

@@ -18,7 +18,7 @@
 #endif
 
 Sides filtered_sides(uint voxel) {
-    uint first = voxel * BRICK_DIRECTIONS;
+    uint first = voxel * BRICK_STACKS;
     Sides s;
     for (uint axis = 0u; axis < 3u; ++axis) {
         s.plus[axis] = unpack_half4(sided[first + axis * 2u]);
@@ -39,21 +39,15 @@ Sides sides_of_voxel(uint brick, uint voxel) {
 }
 
 // Opacities along the axes: a voxel hides the same towards both sides.
-vec3 leaf_opacity(uint voxel) { return vec3(unpackHalf2x16(radiance[voxel].y).y); }
-
-vec3 filtered_opacity(uint voxel) {
-    uint first = voxel * BRICK_DIRECTIONS;
-    return vec3(unpackHalf2x16(sided[first].y).y, unpackHalf2x16(sided[first + 2u].y).y,
-                unpackHalf2x16(sided[first + 4u].y).y);
-}
+vec3 filtered_opacity(uint voxel) { return unpack_half4(sided[voxel * BRICK_STACKS + BRICK_DIRECTIONS]).xyz; }
 
 vec3 opacity_of_voxel(uint brick, uint voxel) {
 #if VOXEL_KIND == LEAF_VOXELS
-    return leaf_opacity(leaf_slot(brick) * BRICK_VOXELS + voxel);
+    return vec3(leaf_opacity(leaf_slot(brick) * BRICK_VOXELS + voxel));
 #elif VOXEL_KIND == FILTERED_VOXELS
     return filtered_opacity(brick * BRICK_VOXELS + voxel);
 #else
-    if ((bricks[brick].cell & BRICK_LEAF) != 0u) return leaf_opacity(leaf_slot(brick) * BRICK_VOXELS + voxel);
+    if ((bricks[brick].cell & BRICK_LEAF) != 0u) return vec3(leaf_opacity(leaf_slot(brick) * BRICK_VOXELS + voxel));
     return filtered_opacity(brick * BRICK_VOXELS + voxel);
 #endif
 }

@@ -6,7 +6,7 @@
 #include "lib/ambient_cube.glsl"
 
 // Linear filters: trilinear inside a brick's 3x3x3.
-uniform sampler3D u_brick_atlas;  // six sides: premultiplied radiance / multiplier, opacity
+uniform sampler3D u_brick_atlas;  // six sides: radiance x cover / multiplier, cover; then opacities
 uniform sampler3D u_leaf_colors;  // premultiplied radiance / multiplier, opacity
 uniform sampler3D u_leaf_normals; // mean normal x opacity
 
@@ -14,21 +14,23 @@ uniform sampler3D u_leaf_normals; // mean normal x opacity
 struct ViewOfVoxels {
     vec3 direction;
     uvec3 sides;   // that it sees
-    float backs;   // share of their opacity that leaves keep whose back it sees
+    float own;     // opacity that the surface it leaves may have here: see hidden_share
 };
 
 ViewOfVoxels view_of_voxels(vec3 direction) {
-    return ViewOfVoxels(direction, sides_seen(direction), 1.0);
+    return ViewOfVoxels(direction, sides_seen(direction), 0.0);
 }
 
-// Three trilinear lookups, one for each side that the ray sees, weighted by direction.
+// Four trilinear lookups, one for each side that the ray sees and one for the opacities.
 // local: 0..1 in the node. Premultiplied HDR radiance and opacity a voxel of the node's level.
 vec4 sides_lookup(Node node, vec3 local, ViewOfVoxels view) {
     vec3 at = (vec3(brick_texel(node_brick(node))) + 0.5 + 2.0 * local) * u_octree.atlas_texel;
     vec3 z = at.z + vec3(view.sides * BRICK_SIDE) * u_octree.atlas_texel.z;
     vec4 value = mean_of_sides(
         textureLod(u_brick_atlas, vec3(at.xy, z.x), 0.0), textureLod(u_brick_atlas, vec3(at.xy, z.y), 0.0),
-        textureLod(u_brick_atlas, vec3(at.xy, z.z), 0.0), view.direction);
+        textureLod(u_brick_atlas, vec3(at.xy, z.z), 0.0),
+        textureLod(u_brick_atlas, vec3(at.xy, at.z + float(BRICK_DIRECTIONS * BRICK_SIDE) * u_octree.atlas_texel.z), 0.0).rgb,
+        view.direction, view.own);
     return vec4(value.rgb * node_scale(node), value.a);
 }
 
@@ -42,7 +44,7 @@ vec4 leaf_lookup(Node node, vec3 local, ViewOfVoxels view) {
     float front = front_visibility(normal, view.direction);
     float opacity = min(value.a / voxels_an_area(normal), 1.0);
     vec3 shown = value.rgb * (node_scale(node) * front * opacity / value.a);
-    return vec4(shown, opacity * mix(front, 1.0, view.backs));
+    return vec4(shown, hidden_share(front * opacity, opacity, view.own));
 }
 
 vec4 node_lookup(Node node, int level, vec3 local, ViewOfVoxels view) {

@@ -3,14 +3,15 @@
 
 #include "lib/lattice.glsl"
 #include "lib/ambient_cube.glsl"
+#include "lib/packing.glsl"
 
 layout(std430) readonly buffer Bricks { Brick bricks[]; };
 layout(std430) readonly buffer State { OctreeState octree_state; };
 layout(std430) readonly buffer Attributes { VoxelAttributes attributes[]; };
-// Half floats: radiance premultiplied by opacity, opacity.
-layout(std430) readonly buffer Radiance { uvec2 radiance[]; };
+layout(std430) readonly buffer Radiance { uint radiance[]; };  // RGB9E5
 
-// Premultiplied radiance and opacity towards both sides along each axis.
+// What viewers on both sides along each axis see: a, the share of a voxel's face that fronts of surfaces
+// cover; rgb, their radiance times that share.
 struct Sides {
     vec4 plus[3];
     vec4 minus[3];
@@ -19,15 +20,24 @@ struct Sides {
 vec4 unpack_half4(uvec2 code) { return vec4(unpackHalf2x16(code.x), unpackHalf2x16(code.y)); }
 uvec2 pack_half4(vec4 v) { return uvec2(packHalf2x16(v.xy), packHalf2x16(v.zw)); }
 
+// A leaf's opacity is its material's, and the same along all axes.
+float leaf_opacity(uint voxel) { return unpackUnorm4x8(attributes[voxel].albedo).a; }
+
+// Premultiplied radiance and opacity.
+vec4 leaf_value(uint voxel) {
+    float opacity = leaf_opacity(voxel);
+    return vec4(rgb9e5_unpack(radiance[voxel]) * opacity, opacity);
+}
+
 Sides leaf_sides(uint voxel) {
-    vec4 value = unpack_half4(radiance[voxel]);
+    vec4 value = leaf_value(voxel);
     vec3 normal = unpackSnorm4x8(attributes[voxel].normal).xyz;
     float squared = dot(normal, normal);
     vec3 cosine = normal * inversesqrt(max(squared, 1e-6));
     Sides s;
     for (int axis = 0; axis < 3; ++axis) {
-        s.plus[axis] = vec4(value.rgb * side_visibility(squared, cosine[axis]), value.a);
-        s.minus[axis] = vec4(value.rgb * side_visibility(squared, -cosine[axis]), value.a);
+        s.plus[axis] = value * front_share(squared, cosine[axis]);
+        s.minus[axis] = value * front_share(squared, -cosine[axis]);
     }
     return s;
 }

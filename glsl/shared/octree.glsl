@@ -15,6 +15,7 @@ const uint BRICK_VOXELS = 8u;          // 2x2x2
 const uint BRICK_SIDE = 3u;            // 3x3x3 with the redundant border
 const uint BRICK_DIRECTIONS = 6u;      // +x -x +y -y +z -z: the side of the voxel that one looks at
                                        // (the finest level keeps colour and normal instead)
+const uint BRICK_STACKS = 7u;          // the six sides, then the opacities along x, y and z
 const uint FRAGMENT_GROUP = 128u;      // threads a group over the fragment queue
 const uint BRICK_GROUP = 64u;          // threads a group over bricks and their voxels
 const uint SCAN_BLOCKS = 2048u;        // 64-node blocks that one such group sums

@@ -1,4 +1,4 @@
-// Writes the 6 x 3x3x3 texels of each brick above the finest level, as RGBA8 under one power of two.
+// Writes the 7 x 3x3x3 texels of each brick above the finest level, as RGBA8 under one power of two.
 // [Mittring12 "Generate mip-maps, Create redundant border, Compress": HDR multiplier, LDR colour]
 //
 // Border and neighbour encode the same HDR value. A power of two keeps them equal to the bit where
@@ -45,8 +45,8 @@ void main() {
 #if LISTED
     for (uint left = ~points.occupied & 0x7ffffffu; left != 0u; left &= left - 1u) {
         ivec3 at = base + ivec3(place_of_point(uint(findLSB(left))));
-        for (uint side = 0u; side < BRICK_DIRECTIONS; ++side) {
-            imageStore(u_atlas, at + ivec3(0, 0, side * BRICK_SIDE), vec4(0.0));
+        for (uint stack = 0u; stack < BRICK_STACKS; ++stack) {
+            imageStore(u_atlas, at + ivec3(0, 0, stack * BRICK_SIDE), vec4(0.0));
         }
     }
 #endif
@@ -62,5 +62,7 @@ void main() {
             at.z += int(BRICK_SIDE);
             imageStore(u_atlas, at, vec4(sides.minus[axis].rgb * inverse_scale, sides.minus[axis].a));
         }
+        ivec3 above = base + ivec3(place) + ivec3(0, 0, BRICK_DIRECTIONS * BRICK_SIDE);
+        imageStore(u_atlas, above, vec4(opacity_of_voxel(owner, voxel), 0.0));
     }
 }

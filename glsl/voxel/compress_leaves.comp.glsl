@@ -35,7 +35,7 @@ void main() {
         uint owner = owner_of_point(points, place_of_point(i), voxel);
         uint index = leaf_slot(owner) * BRICK_VOXELS + voxel;
         voxel_at[i] = index;
-        maximum = max(maximum, unpack_half4(radiance[index]).rgb);
+        maximum = max(maximum, leaf_value(index).rgb);
     }
     float inverse_scale = store_multiplier(brick, largest(maximum));
 
@@ -52,7 +52,7 @@ void main() {
         uint i = uint(findLSB(left));
         uvec3 place = place_of_point(i);
         uint index = voxel_at[i];
-        vec4 value = unpack_half4(radiance[index]);
+        vec4 value = leaf_value(index);
         vec3 normal = unpackSnorm4x8(attributes[index].normal).xyz;
         imageStore(u_colors, base + ivec3(place), vec4(value.rgb * inverse_scale, value.a));
         imageStore(u_normals, base + ivec3(place), vec4(normal * value.a, 0.0));

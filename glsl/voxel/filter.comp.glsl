@@ -47,11 +47,8 @@ float let_through(uint occupied, uint i, int axis, int steps) {
     return 1.0 - kept_opacity(point, axis);
 }
 
-// Half of a slab: two halves in a row are as opaque as the whole, and let through the square root.
-vec4 half_slab(vec4 slab) {
-    float opacity = 1.0 - sqrt(max(1.0 - slab.a, 0.0));
-    return slab * (opacity / max(slab.a, 1e-6));
-}
+// Share of a slab's opacity that half of it has: two in a row hide what the whole does.
+float half_slab(float opacity) { return (1.0 - sqrt(max(1.0 - opacity, 0.0))) / max(opacity, 1e-6); }
 
 void main() {
     uint item = linear_thread_id();
@@ -72,6 +69,7 @@ void main() {
 
     vec4 plus[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));  // as viewers on the + sides see it
     vec4 minus[3] = plus;
+    vec3 opacity = vec3(0.0);
     for (uint left = around.occupied; left != 0u; left &= left - 1u) {
         uint i = uint(findLSB(left));
         uvec3 place = place_of_point(i);
@@ -85,18 +83,26 @@ void main() {
             int at = int(place[axis]) - 1;
             float end = sqrt(let_through(around.occupied, i, axis, at == 0 ? 1 : -2 * at));
             float other = let_through(around.occupied, i, axis, at == 0 ? -1 : -at);
+            float own = kept_opacity(i, axis);
+            float from_plus = share[axis];
+            float from_minus = share[axis];
             if (at == 0) {
-                plus[axis] += share[axis] * end * sides.plus[axis];
-                minus[axis] += share[axis] * sqrt(other) * sides.minus[axis];
+                from_plus *= end;
+                from_minus *= sqrt(other);
             } else {
                 float hidden = end * other;
-                plus[axis] += share[axis] * (at < 0 ? hidden : 1.0) * half_slab(sides.plus[axis]);
-                minus[axis] += share[axis] * (at > 0 ? hidden : 1.0) * half_slab(sides.minus[axis]);
+                from_plus *= (at < 0 ? hidden : 1.0) * half_slab(own);
+                from_minus *= (at > 0 ? hidden : 1.0) * half_slab(own);
             }
+            plus[axis] += from_plus * sides.plus[axis];
+            minus[axis] += from_minus * sides.minus[axis];
+            opacity[axis] += from_plus * own;
         }
     }
-    for (int axis = 0; axis < 3; ++axis) {
-        sided[voxel * BRICK_DIRECTIONS + axis * 2u] = pack_half4(plus[axis]);
-        sided[voxel * BRICK_DIRECTIONS + axis * 2u + 1u] = pack_half4(minus[axis]);
+    uint first = voxel * BRICK_STACKS;
+    for (uint axis = 0u; axis < 3u; ++axis) {
+        sided[first + axis * 2u] = pack_half4(plus[axis]);
+        sided[first + axis * 2u + 1u] = pack_half4(minus[axis]);
     }
+    sided[first + BRICK_DIRECTIONS] = pack_half4(vec4(opacity, 0.0));
 }

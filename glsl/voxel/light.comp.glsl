@@ -1,4 +1,4 @@
-// Shades every occupied leaf voxel and stores its radiance and opacity: gather, not scatter.
+// Shades every occupied leaf voxel and stores its radiance: gather, not scatter.
 // [Mittring12 "Voxel Lighting Pipeline": direct light with shadow maps, ambient colour, combine
 // with albedo, add emissive]
 
@@ -22,7 +22,7 @@ layout(local_size_x = 64) in;
 layout(std430) readonly buffer State { OctreeState octree_state; };
 layout(std430) readonly buffer Bricks { Brick bricks[]; };
 layout(std430) readonly buffer Attributes { VoxelAttributes attributes[]; };
-layout(std430) writeonly buffer Radiance { uvec2 radiance[]; };
+layout(std430) writeonly buffer Radiance { uint radiance[]; };  // RGB9E5
 
 // A voxel's point lies up to sqrt(3)/2 voxels from its surface; this clears it.
 const float SHADOW_OFFSET_VOXELS = 1.0;
@@ -71,6 +71,5 @@ void main() {
     if (octree_state.fresh == 0u)
 #endif
     incident += gathered_radiance(p_ws, normal, spacing);
-    vec3 outgoing = min(albedo.rgb * incident + rgb9e5_unpack(voxel.emissive), HALF_MAX);
-    radiance[index] = uvec2(packHalf2x16(outgoing.rg * albedo.a), packHalf2x16(vec2(outgoing.b, 1.0) * albedo.a));
+    radiance[index] = rgb9e5_pack(albedo.rgb * incident + rgb9e5_unpack(voxel.emissive));
 }

@@ -43,7 +43,9 @@ void main() {
     if (index >= u_octree.fragment_capacity) return;  // dropped; counted in queue.comp
     VoxelFragment fragment;
     fragment.position = pack_position(point);
-    fragment.albedo = packUnorm4x8(vec4(surface.albedo, opacity));
+    // What a surface mirrors goes on as if it were diffuse: the right power, in all directions.
+    vec3 albedo = surface.albedo + mirrored_share(surface.specular_color, surface.roughness);
+    fragment.albedo = packUnorm4x8(vec4(albedo, opacity));
     fragment.normal = normal_snorm8_pack(normal_ws);
     vec3 emissive = min(surface.emissive, materials[v_material].emission_max);
     fragment.emissive = rgb9e5_pack(emissive * v_emission);

@@ -30,7 +30,7 @@ def contents(stage: Stage) -> dict[str, bytes]:
         "nodes": used("nodes", nodes, layouts().struct("Node").itemsize),
         "bricks": used("bricks", counts.bricks, brick_bytes),
         "attributes": used("attributes", counts.leaves, 8 * attribute_bytes),
-        "radiance": used("radiance", counts.leaves, 8 * 8),
+        "radiance": used("radiance", counts.leaves, 8 * 4),
         "sides": octree.atlas.read().tobytes(),
         "leaf colors": octree.leaf_colors.read().tobytes(),
         "leaf normals": octree.leaf_normals.read().tobytes(),

@@ -112,18 +112,18 @@ class Pools:
 
 
 def read_sided(stage: Stage) -> Array:
-    """(I, 3, 3, 3, 24) uint8 codes of the bricks above the finest level by [z, y, x, channel].
+    """(I, 3, 3, 3, 28) uint8 codes of the bricks above the finest level by [z, y, x, channel].
 
-    Channels, for each of six sides: premultiplied colour, opacity.
+    Channels, for each of six sides: colour times cover, cover; then opacity along x, y and z, 0.
     """
     body = """
-        int b = index / 162, side = (index / 27) % 6, i = index % 27;
-        ivec3 texel = ivec3(i % 3, (i / 3) % 3, i / 9 + 3 * side);
+        int b = index / 189, stack = (index / 27) % 7, i = index % 27;
+        ivec3 texel = ivec3(i % 3, (i / 3) % 3, i / 9 + 3 * stack);
         result = texelFetch(u_brick_atlas, brick_texel(uint(b)) + texel, 0) * 255.0;
     """
     bricks = stage.counts.interior
-    codes = _run(stage, body, bricks * 162).reshape(bricks, 6, 3, 3, 3, 4)
-    return np.moveaxis(codes, 1, 4).reshape(bricks, 3, 3, 3, 24).astype(np.uint8)
+    codes = _run(stage, body, bricks * 189).reshape(bricks, 7, 3, 3, 3, 4)
+    return np.moveaxis(codes, 1, 4).reshape(bricks, 3, 3, 3, 28).astype(np.uint8)
 
 
 def read_leaves(stage: Stage) -> Array:
@@ -170,20 +170,29 @@ def fragment_counts(stage: Stage) -> Array:
     return np.asarray(words["normal"] >> constant("ATTRIBUTES_COUNT_SHIFT")).reshape(-1, 8)
 
 
+def rgb9e5_values(words: Array) -> Array:
+    """(..., 3) colours of RGB9E5 codes [EXT_texture_shared_exponent]."""
+    words = np.asarray(words, np.uint32)[..., None]
+    scale = np.exp2((words >> 27).astype(np.float64) - 24.0)
+    return np.asarray((words >> np.array([0, 9, 18], np.uint32) & 511) * scale)
+
+
 def leaf_values(stage: Stage) -> tuple[Array, Array]:
     """(S, 8, 4) premultiplied radiance and opacity, (S, 8, 3) mean normals, by slot and voxel.
 
     Slots count the bricks of the levels that may hold leaves.
     """
     leaves = stage.counts.leaves
-    radiance = stage.octree.radiance.read(np.float16, leaves * 32).astype(np.float64)
+    radiance = rgb9e5_values(stage.octree.radiance.read(np.uint32, leaves * 8))
     words = stage.octree.attributes.read(layouts().struct("VoxelAttributes"), leaves * 8)
     normal = words["normal"].copy().view(np.int8).reshape(leaves, 8, 4)[..., :3] / 127.0
-    return radiance.reshape(leaves, 8, 4), np.maximum(normal, -1.0)
+    opacity = (words["albedo"].reshape(leaves, 8, 1) >> 24) / 255.0
+    values = np.concatenate([radiance.reshape(leaves, 8, 3) * opacity, opacity], axis=-1)
+    return values, np.maximum(normal, -1.0)
 
 
 def sided_values(stage: Stage, pools: Pools) -> Array:
-    """(I, 8, 6, 4) HDR values of every brick above the finest level by [brick, voxel, side].
+    """(I, 8, 7, 4) HDR values of every brick above the finest level by [brick, voxel, stack].
 
     Leaves of coarser regions derive theirs from radiance and normal.
     """
@@ -205,4 +214,7 @@ def sided_values(stage: Stage, pools: Pools) -> Array:
                 params=stage.octree.params,
             )
             values[leaves, :, 2 * axis + k] = got.reshape(-1, 8, 4)
+    values[leaves, :, 6] = 0.0
+    opacity = leaf_values(stage)[0][leaves - first, :, 3:]
+    values[leaves, :, 6, :3] = opacity
     return values

@@ -150,7 +150,7 @@ class Stage(Lit):
         g.execute()
         assert sided.physical is not None
         values = sided.physical.read(np.float16, sided.nbytes // 2)
-        self.sided = values.reshape(-1, 8, 6, 4).astype(np.float64)
+        self.sided = values.reshape(-1, 8, 7, 4).astype(np.float64)
 
     @property
     def counts(self) -> Counts:

@@ -36,8 +36,8 @@ TEXELS = np.array(list(product(range(3), repeat=3)))
 BITS = np.array([1, 2, 4])
 ROUNDING = 0.5 + 2e-3
 """Of a code, with what float32 may lose on the way to it."""
-COLORS = np.arange(24) % 4 < 3
-"""Which channels of a six-sided texel the multiplier scales."""
+COLORS = (np.arange(28) % 4 < 3) & (np.arange(28) < 24)
+"""Which channels of a brick's texels the multiplier scales."""
 
 
 def span(offset: int) -> tuple[slice, slice]:
@@ -107,7 +107,7 @@ def assert_borders(stage: Stage) -> int:
         assert (leaves[absent[interior:], z, y, x] == 0).all(), "an absent neighbour is empty"
 
         ours = np.flatnonzero(~absent[:interior])
-        wanted = hdr[lender[ours], voxel[ours]].reshape(-1, 24) * 255.0
+        wanted = hdr[lender[ours], voxel[ours]].reshape(-1, 28) * 255.0
         wanted[:, COLORS] /= pools.scale[ours, None]
         assert wanted.max() <= 255.0 + ROUNDING
         assert np.abs(sided[ours, z, y, x] - wanted).max() <= ROUNDING, texel

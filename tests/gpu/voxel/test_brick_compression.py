@@ -37,7 +37,7 @@ def assert_error(stage: Stage) -> Array:
     pools, interior = Pools.read(stage), stage.counts.interior
     sided, leaves = read_sided(stage), read_leaves(stage)
     hdr, (radiance, normals) = sided_values(stage, pools), leaf_values(stage)
-    wanted = hdr.reshape(interior, 8, 24)
+    wanted = hdr.reshape(interior, 8, 28)
     got = own_voxels(sided)
     above = relative_errors(
         got[..., COLORS], wanted[..., COLORS], pools.scale[:interior], sided[..., COLORS]

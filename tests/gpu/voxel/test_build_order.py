@@ -21,7 +21,7 @@ from elemental.passes.voxel.grid import Grid
 from elemental.scene.model import Scene
 from gpu.rig import at, scene, vector
 from gpu.voxel.digest import contents, digest
-from gpu.voxel.pools import Pools, fragment_counts
+from gpu.voxel.pools import Pools, fragment_counts, rgb9e5_values
 from gpu.voxel.scenes import colored, glowing, jumble, part
 from gpu.voxel.stage import MakeStage, Stage
 from shapes import quad
@@ -60,12 +60,6 @@ def test_the_order_of_fragments_does_not_matter(device: Device, stage: MakeStage
     made.light()
     assert contents(made) == expected
     queue.release()
-
-
-def rgb9e5(codes: Array) -> Array:
-    """(N, 3) radiance of RGB9E5 words."""
-    mantissa = np.stack([codes & 511, codes >> 9 & 511, codes >> 18 & 511], axis=-1)
-    return mantissa * np.exp2((codes >> 27).astype(np.float64) - 24)[:, None]
 
 
 def snorm8(codes: Array) -> Array:
@@ -135,10 +129,10 @@ def test_attributes_average_all_fragments_of_a_voxel(
     got = snorm8(held["normal"].copy())
     assert np.abs(got - averages(slots, normals)).max() <= 1.01 / 127
 
-    emitted = rgb9e5(fragments["emissive"])
+    emitted = rgb9e5_values(fragments["emissive"])
     emits = (emitted.max(axis=1) > 0).astype(float)
     wanted = averages(slots, emitted, emits)
-    got = rgb9e5(held["emissive"])
+    got = rgb9e5_values(held["emissive"])
     brightest = emitted.max()
     bound = wanted.max(axis=1, keepdims=True) / 512 + brightest / 65535
     assert (np.abs(got - wanted) <= bound).all()

@@ -13,6 +13,7 @@ from elemental.core.layout import layouts
 from elemental.gpu.device import Device
 from elemental.passes.voxel.lighting import SLICES, VoxelLighting
 from gpu.rig import vector
+from gpu.voxel.pools import rgb9e5_values
 from gpu.voxel.scenes import colored, grid_with
 from gpu.voxel.stage import Lit
 from gpu.voxel.walk import Walk, assert_same, held, show, still, update, world
@@ -155,7 +156,7 @@ def test_further_bounces_are_complete_in_every_frame(
     got, wanted = held(voxels.octree), held(other.octree)
     np.testing.assert_array_equal(got.cell, wanted.cell)
     np.testing.assert_array_equal(got.attributes, wanted.attributes)
-    light, same = (h.radiance.view(np.float16).astype(float) for h in (got, wanted))
+    light, same = (rgb9e5_values(h.radiance) for h in (got, wanted))
     assert light.max() > 0.1
     np.testing.assert_allclose(light, same, rtol=0.01, atol=2e-3)
     for item in (voxels, other):
@@ -183,10 +184,10 @@ def test_spread_gathers_settle_at_the_light_of_many_bounces(device: Device, lit:
     other = fresh(lit, voxels, 6)
     got, wanted = held(voxels.octree), held(other.octree)
     np.testing.assert_array_equal(got.attributes, wanted.attributes)
-    light, same = (h.radiance.view(np.float16).astype(float) for h in (got, wanted))
+    light, same = (rgb9e5_values(h.radiance) for h in (got, wanted))
     np.testing.assert_allclose(light, same, rtol=0.03, atol=4e-3)
     once = fresh(lit, voxels, 1)
-    assert np.abs(held(once.octree).radiance.view(np.float16).astype(float) - same).max() > 0.05
+    assert np.abs(rgb9e5_values(held(once.octree).radiance) - same).max() > 0.05
     for item in (voxels, other, once):
         item.release()
 

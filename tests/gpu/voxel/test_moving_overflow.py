@@ -18,7 +18,7 @@ from elemental.gpu.device import Device
 from elemental.gpu.resources import Buffer
 from elemental.passes.voxel import sizing
 from elemental.passes.voxel.lighting import VoxelLighting
-from elemental.passes.voxel.octree import Capacity
+from elemental.passes.voxel.octree import SIDED_BYTES_A_BRICK, Capacity
 from elemental.settings import Settings
 from gpu.rig import camera, vector
 from gpu.voxel.pools import read_leaves, read_sided
@@ -56,12 +56,12 @@ def tell(voxels: VoxelLighting, told: Capacity) -> dict[str, tuple[Buffer, int]]
         ),
         "lists": (octree.voxel_list, (octree._listed_voxels() + told.bricks) * 4),
         "attributes": (octree.attributes, told.leaves * 8 * 12),
-        "radiance": (octree.radiance, told.leaves * 8 * 8),
+        "radiance": (octree.radiance, told.leaves * 8 * 4),
         "fragments": (kept.fragments, told.fragments * 16),
         "links": (kept.links, told.fragments * 4),
         "heads": (kept.heads, told.leaves * 8 * 8),
         "free slots": (kept.free_slots, sum(told.slots(one_leaf_level=True)) * 4),
-        "sided": (kept.sided, told.interior * 8 * 6 * 8),
+        "sided": (kept.sided, told.interior * SIDED_BYTES_A_BRICK),
     }  # fmt: skip
     ends = {name: (buffer, end) for name, (buffer, end) in ends.items() if end < buffer.nbytes}
     for buffer, end in ends.values():

@@ -117,18 +117,18 @@ def test_slack_counts_what_was_dropped() -> None:
 
 
 def test_no_pool_is_larger_than_a_storage_block() -> None:
-    """Of attributes, 96 bytes a leaf, and of filtered values, 384 bytes a brick above the finest
+    """Of attributes, 96 bytes a leaf, and of filtered values, 448 bytes a brick above the finest
     level, however much the budget allows."""
     many = replace(ASKED, bricks=9_000_000, leaves_asked=8_000_000, interior_asked=1_000_000,
                    fragments=20_000_000)  # fmt: skip
     got = sizing.capacity_for(many, 1 << 60)
     assert got.leaves == (1 << 27) // 96
-    assert got.interior == (1 << 27) // 384
+    assert got.interior == (1 << 27) // 448
     assert got.fragments == (1 << 27) // 16
     assert got.bricks == got.leaves + got.interior
-    some = replace(ASKED, bricks=1_600_000, leaves_asked=1_300_000, interior_asked=300_000)
+    some = replace(ASKED, bricks=1_590_000, leaves_asked=1_300_000, interior_asked=290_000)
     got = sizing.capacity_for(some, 1 << 60)
-    assert (got.bricks, got.leaves, got.interior) == (1_600_000, 1_300_000, 300_000)
+    assert (got.bricks, got.leaves, got.interior) == (1_590_000, 1_300_000, 290_000)
 
 
 def test_a_budget_takes_slack_first_then_leaves_then_the_rest() -> None:

@@ -89,7 +89,7 @@ def tails(stage: Stage, told: Capacity) -> dict[str, tuple[Array, int]]:
         "bricks": (words("bricks", told.bricks * struct["Brick"]), CANARY),
         "voxel list": (words("voxel_list", (told.interior * 8 + lit) * 4), CANARY),
         "attributes": (words("attributes", told.leaves * 8 * struct["VoxelAttributes"]), 0),
-        "radiance": (words("radiance", told.leaves * 8 * 8), 0),
+        "radiance": (words("radiance", told.leaves * 8 * 4), 0),
         "fragments": (stage.transients["voxel.fragments"][told.fragments * 4 :], CANARY),
         "sided": (stage.sided[told.interior :], 0),
         "sides": (read_sided(stage)[told.interior :], 0),

@@ -18,38 +18,48 @@ TENT = np.array([0.25, 0.5, 0.25])
 
 
 def leaf_sides(stage: Stage) -> Array:
-    """(S, 8, 6, 4) what the sides of leaf voxels show."""
+    """(S, 8, 7, 4) what the sides of leaf voxels show, and their opacities along the axes."""
     radiance, normal = leaf_values(stage)
     squared = (normal**2).sum(axis=-1)[..., None]
     cosine = normal / np.sqrt(np.maximum(squared, 1e-6))
     cosines = np.stack([cosine, -cosine], axis=-1).reshape(*cosine.shape[:2], 6)
     certainty = np.minimum(4 * squared, 1)
-    shown = 1 + certainty * (np.clip(1 + np.sqrt(3) * cosines, 0, 1) - 1)
-    sides = np.repeat(radiance[:, :, None], 6, axis=2)
-    sides[..., :3] *= shown[..., None]
-    return sides
+    covered = 1 + certainty * (np.maximum(cosines, 0) - 1)
+    sides = radiance[:, :, None] * covered[..., None]
+    opacity = np.repeat(radiance[..., 3:], 3, axis=-1)
+    return with_opacity(sides, opacity)
+
+
+def with_opacity(sides: Array, opacity: Array) -> Array:
+    """(N, 8, 7, 4) of sides (N, 8, 6, 4) and opacities along x, y and z (N, 8, 3)."""
+    above = np.pad(opacity, [(0, 0)] * (opacity.ndim - 1) + [(0, 1)])
+    return np.concatenate([sides, above[..., None, :]], axis=-2)
 
 
 def over(front: Array, back: Array) -> Array:
-    return front + (1 - front[..., 3:]) * back
+    """What shows of both; the last channel hides."""
+    return front + (1 - front[..., 4:]) * back
 
 
 def half(slab: Array) -> Array:
     """Two of these in a row are as opaque as the slab."""
-    opacity = 1 - np.sqrt(1 - slab[..., 3:])
-    return np.asarray(slab * (opacity / np.maximum(slab[..., 3:], 1e-6)))
+    opacity = 1 - np.sqrt(1 - slab[..., 4:])
+    return np.asarray(slab * (opacity / np.maximum(slab[..., 4:], 1e-6)))
 
 
 def filtered(around: Array) -> Array:
-    """(N, 6, 4) from (N, 3, 3, 3, 6, 4) by [x, y, z, side]."""
+    """(N, 7, 4) from (N, 3, 3, 3, 7, 4) by [x, y, z, stack]."""
     sides = []
     for side in range(6):
-        along = np.moveaxis(around[..., side, :], 1 + side // 2, 1)
+        axis = side // 2
+        slabs = np.concatenate([around[..., side, :], around[..., 6, axis, None]], axis=-1)
+        along = np.moveaxis(slabs, 1 + axis, 1)
         low, middle, high = half(along[:, 0]), along[:, 1], half(along[:, 2])
         front, back = (low, high) if side % 2 else (high, low)
         columns = over(front, over(middle, back))
         sides.append(np.einsum("nijc,i,j->nc", columns, TENT, TENT))
-    return np.stack(sides, axis=1)
+    values = np.stack(sides, axis=1)
+    return with_opacity(values[..., :4], values[:, ::2, 4])
 
 
 @pytest.mark.parametrize("mip", [1, 2, 3])
@@ -63,7 +73,7 @@ def test_filtered_voxels_are_what_surrounds_them(jumbled: Stage, mip: int) -> No
     held = pools.points[bricks] >> octants & 1 == 1
     bricks, octants = bricks[held], octants[held]
     points = 4 * pools.cell[bricks] + 2 * OCTANTS[octants]  # on the finer lattice
-    around = np.zeros((len(points), 3, 3, 3, 6, 4))
+    around = np.zeros((len(points), 3, 3, 3, 7, 4))
     for place in np.ndindex(3, 3, 3):
         point = points + place - np.ones(3, int)
         brick = pools.brick_at(point >> 1, level + 1)
@@ -72,6 +82,6 @@ def test_filtered_voxels_are_what_surrounds_them(jumbled: Stage, mip: int) -> No
         around[found, *place] = finer[brick[found] - first, octant[found]]
     wanted = filtered(around)
     assert len(wanted) > 50
-    assert wanted[..., 3].max() > 0.5
+    assert wanted[:, :6, 3].max() > 0.5
     got = jumbled.sided[bricks, octants]
     np.testing.assert_allclose(got, wanted, rtol=1.5 / 1024, atol=5e-5)

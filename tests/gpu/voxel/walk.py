@@ -163,7 +163,7 @@ def held(octree: Octree) -> Held:
     leaf = pools.is_leaf[bricks]
     words = layouts().struct("VoxelAttributes").itemsize // 4
     attributes = octree.attributes.read(np.uint32).reshape(-1, 8, words)
-    radiance = octree.radiance.read(np.uint32).reshape(-1, 8, 2)
+    radiance = octree.radiance.read(np.uint32).reshape(-1, 8, 1)
     slots = np.where(leaf, bricks - int(state["first_leaf_brick"]), 0)
     occupied = (pools.points[bricks, None] >> np.arange(8) & 1).astype(bool) & leaf[:, None]
     finest = found[:, 0] == grid.leaf_level
@@ -183,7 +183,7 @@ def held(octree: Octree) -> Held:
 
 
 def _texels(atlas: Texture, slots: Array, brick: tuple[int, int, int]) -> Array:
-    """(N, 27 or 162, 4) texels of bricks."""
+    """(N, 27 or 189, 4) texels of bricks."""
     texels = atlas.read()
     width, height, depth = brick
     a_row = texels.shape[2] // width

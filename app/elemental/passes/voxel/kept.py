@@ -10,8 +10,12 @@ from elemental.gpu.resources import Buffer
 from elemental.gpu.shaders import Compute
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.voxel.build import BLOCK_BYTES, mark, state_offset
-from elemental.passes.voxel.light import SIDED_BYTES_A_BRICK
-from elemental.passes.voxel.octree import CATEGORY, NODE_BLOCK_BYTES, Octree
+from elemental.passes.voxel.octree import (
+    CATEGORY,
+    NODE_BLOCK_BYTES,
+    SIDED_BYTES_A_BRICK,
+    Octree,
+)
 from elemental.passes.voxel.voxelize import append_fragments
 
 BEGIN = Compute("voxel/begin_step.comp.glsl")

@@ -10,16 +10,17 @@ from elemental.gpu.refs import AnyBuffer
 from elemental.gpu.shaders import Compute
 from elemental.passes.light_cells import ALL_LIGHTS, NO_CELLS, WORLD_CELLS, LightCells
 from elemental.passes.voxel.build import level_params, state_offset
-from elemental.passes.voxel.octree import Octree
+from elemental.passes.voxel.octree import SIDED_BYTES_A_BRICK, Octree
 
 if TYPE_CHECKING:
     from elemental.passes.shadow import ShadowMaps
     from elemental.passes.sky import Sky
 
+GATHER = {"GATHER": 1, "CONE_SPLIT": 1, "CLEARANCE": 8}
 GATHERS: dict[str, dict[str, int]] = {
     "nothing": {},
-    "present": {"GATHER": 1, "CONE_SPLIT": 1},
-    "last": {"GATHER": 1, "CONE_SPLIT": 1, "SPREAD": 1},
+    "present": GATHER,
+    "last": {**GATHER, "SPREAD": 1},
 }
 """Whose radiance is gathered, that of this frame or of the last -> defines."""
 LIGHT = {
@@ -27,7 +28,6 @@ LIGHT = {
     for gathered, defines in GATHERS.items()
     for cells in (ALL_LIGHTS, WORLD_CELLS)
 }
-SIDED_BYTES_A_BRICK = 8 * 6 * 8
 
 
 def _reader(path: str, kind: str, one_leaf_level: bool, listed: bool = False) -> Compute:
@@ -101,7 +101,7 @@ def light_voxels(
 def filter_levels(g: Graph, octree: Octree, kept: AnyBuffer | None = None) -> AnyBuffer:
     """Six-sided values of the listed voxels above the finest level, from the finest up.
 
-    8 x 6 half4 a brick, in ``kept``, or in a buffer of this frame.
+    SIDED_BYTES_A_BRICK each, in ``kept``, or in a buffer of this frame.
     """
     sided = kept
     if sided is None:

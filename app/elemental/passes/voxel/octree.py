@@ -15,10 +15,15 @@ from elemental.gpu.resources import Buffer, Texture
 from elemental.passes.voxel.grid import Grid
 
 CATEGORY = "octree"
-SIDED_TEXELS = (3, 3, 18)
-"""A brick above the finest level: 3x3x3 texels for each of six directions, stacked in z."""
+SIDED_TEXELS = (3, 3, 21)
+"""A brick above the finest level: 3x3x3 texels for each of six directions and for the opacities
+along the axes, stacked in z."""
 LEAF_TEXELS = (3, 3, 3)
 """A brick of the finest level, in the atlas of colours and in that of normals."""
+SIDED_BYTES_A_BRICK = 8 * 7 * 8
+"""Half floats of its 2x2x2 voxels: six sides, opacities (shared/sided.glsl)."""
+RADIANCE_BYTES = 4
+"""Of a leaf voxel: RGB9E5."""
 ATLAS_SIDES_LOG2 = (5, 6, 7)
 """Bricks a row of the atlas, as powers of two, the smallest that fits is taken."""
 NODE_BLOCK_BYTES = 16
@@ -55,13 +60,13 @@ class Capacity:
         """
         sided = self.interior * 4 * (math.prod(SIDED_TEXELS) + 8)
         finest = (self.bricks - self.interior) * 2 * 4 * math.prod(LEAF_TEXELS)
-        leaves = self.leaves * 8 * (_struct_bytes("VoxelAttributes") + 8 + 4)
+        leaves = self.leaves * 8 * (_struct_bytes("VoxelAttributes") + RADIANCE_BYTES + 4)
         nodes = self.tiles * 8 * _struct_bytes("Node") + self.bricks * _struct_bytes("Brick")
         kept = 0
         if keeps_slots:
             queue = self.fragments * (_struct_bytes("VoxelFragment") + 4)
             tables = 4 * 4 * (self.bricks + self.tiles)  # now, before, free, listed
-            kept = queue + self.leaves * 8 * 8 + self.interior * 8 * 6 * 8 + tables
+            kept = queue + self.leaves * 8 * 8 + self.interior * SIDED_BYTES_A_BRICK + tables
         return sided + finest + leaves + nodes + kept
 
 
@@ -236,7 +241,7 @@ class Octree(Survey):
         self.voxel_list = pool("voxel_list", (self._listed_voxels() + listed_bricks) * 4)
         attribute_bytes = 8 * _struct_bytes("VoxelAttributes")
         self.attributes = pool("attributes", capacity.leaves * attribute_bytes)
-        self.radiance = pool("radiance", capacity.leaves * 8 * 8)
+        self.radiance = pool("radiance", capacity.leaves * 8 * RADIANCE_BYTES)
         sided = Atlas.fit(capacity.interior, SIDED_TEXELS)
         leaf = Atlas.fit(capacity.bricks - capacity.interior, LEAF_TEXELS)
 

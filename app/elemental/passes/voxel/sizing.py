@@ -13,8 +13,7 @@ from elemental.gpu.resources import Buffer
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.voxel.build import find_nodes
 from elemental.passes.voxel.grid import Grid
-from elemental.passes.voxel.light import SIDED_BYTES_A_BRICK
-from elemental.passes.voxel.octree import Capacity, Counts, Survey
+from elemental.passes.voxel.octree import SIDED_BYTES_A_BRICK, Capacity, Counts, Survey
 from elemental.passes.voxel.voxelize import voxelize
 from elemental.scene.area_lights import AreaLight
 from elemental.scene.model import Scene
