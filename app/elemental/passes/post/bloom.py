@@ -31,6 +31,9 @@ KERNELS = (
     ("bloom.size6", "bloom.tint6"),
 )
 """One a level: half the picture's size, and five downsamples of that."""
+WHOLE = 8.0
+"""Intensity, the end of its range, at which white tints spread all light above the threshold: at 1
+and the tints' defaults it is a sixteenth, about what an eye scatters [Spencer95]."""
 DEVIATIONS = 3.0
 """Standard deviations of a Gaussian in its radius; 0.3 % of it lie beyond."""
 NARROWEST_TEXELS = 0.5
@@ -42,7 +45,7 @@ def bloom(
 ) -> TextureHandle | None:
     """Exposed light to add to the picture, like ``half`` (its halved size): RGBA16F.
 
-    Light above the threshold, spread over six kernels of a sixth of it each, times their tints.
+    Light above the threshold, spread over six kernels of a sixth of it each, times intensity and tints.
     ``width``: the picture's, px. None where it is off.
     """
     levels = [n for n, (_, tint) in enumerate(KERNELS) if max(s[tint]) > 0.0]
@@ -54,7 +57,7 @@ def bloom(
     spread: TextureHandle | None = None
     for level in range(levels[-1], -1, -1):
         size, tint = KERNELS[level]
-        share = s["bloom.intensity"] / len(KERNELS)
+        share = s["bloom.intensity"] / WHOLE / len(KERNELS)
         red, green, blue = s[tint]
         radius = 0.5 * s[size] / 100.0 * width / 2 ** (level + 1)
         factor = (share * red, share * green, share * blue)
