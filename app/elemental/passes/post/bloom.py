@@ -45,7 +45,8 @@ def bloom(
 ) -> TextureHandle | None:
     """Exposed light to add to the picture, like ``half`` (its halved size): RGBA16F.
 
-    Light above the threshold, spread over six kernels of a sixth of it each, times intensity and tints.
+    Light above the threshold, spread over six kernels of a sixth of it each, times intensity and
+    tints.
     ``width``: the picture's, px. None where it is off.
     """
     levels = [n for n, (_, tint) in enumerate(KERNELS) if max(s[tint]) > 0.0]
