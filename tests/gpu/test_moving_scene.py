@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from elemental import frame
 from elemental.gpu.device import Device
 from elemental.gpu.resources import Buffer
+from elemental.passes import area_lights
 from elemental.passes.instance_table import InstanceTable
 from elemental.scene import evaluate as evaluation
 from elemental.scene.deform import posed
@@ -112,7 +112,7 @@ def test_nothing_is_evaluated_while_time_stands_still(
     world = stage()
     renderer = renderers(world)
     asked: list[str] = []
-    for module, name in ((evaluation, "evaluate"), (frame, "pack_area_lights")):
+    for module, name in ((evaluation, "evaluate"), (area_lights, "pack_area_lights")):
         made = getattr(module, name)
         monkeypatch.setattr(
             module, name, lambda *args, made=made, name=name: (asked.append(name), made(*args))[1]

@@ -7,7 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from elemental.core.layout import Block, layouts, pack, pack_array
-from elemental.scene.area_lights import FACES_MAX, AreaLight
+from elemental.scene.area_lights import FACES_MAX, AreaLight, area_lights, followed
+from elemental.scene.evaluate import Pose
+from elemental.scene.model import Scene
 
 
 def pack_area_lights(lights: Sequence[AreaLight]) -> Block:
@@ -31,3 +33,27 @@ def pack_area_lights(lights: Sequence[AreaLight]) -> Block:
     return pack(
         layouts().block("AreaLights"), faces=faces, count=len(lights), inverse_radiance=inverse
     )
+
+
+class AreaLightBlock:
+    """A scene's area lights, and the block that tells shaders where poses have carried them.
+
+    `lights` are those at rest, none while ``enabled`` is off. `choose` again when a material or the
+    setting changed. Poses are compared as objects.
+    """
+
+    def __init__(self, scene: Scene, enabled: bool) -> None:
+        self._scene = scene
+        self.choose(enabled)
+
+    def choose(self, enabled: bool) -> None:
+        """Find the scene's area lights anew."""
+        self.lights = area_lights(self._scene) if enabled else []
+        self.block = pack_area_lights(self.lights)
+        self._followed: Pose | None = None
+
+    def follow(self, pose: Pose) -> None:
+        """Carry the lights along with the instances that emit them."""
+        if self.lights and pose is not self._followed:
+            self.block = pack_area_lights(followed(self._scene, self.lights, pose))
+            self._followed = pose

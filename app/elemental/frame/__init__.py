@@ -1,0 +1,6 @@
+"""One frame: ``declare`` is its passes on one page, ``renderer`` what lives between frames."""
+
+from elemental.frame.renderer import OCTREE_KEYS, SHADOW_KEYS, Frame, Renderer, max_pixels
+from elemental.frame.views import VIEWS
+
+__all__ = ["OCTREE_KEYS", "SHADOW_KEYS", "VIEWS", "Frame", "Renderer", "max_pixels"]
