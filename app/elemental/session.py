@@ -21,8 +21,10 @@ from elemental.core.images import read_environment
 from elemental.gpu.device import Device
 from elemental.scene.camera_path import camera_at
 from elemental.scene.defaults import (
+    EMISSION_GATHERS,
     add_default_lights,
     fixed_exposure_ev,
+    is_lit_by_emission_only,
     is_unlit,
     note_emission_only,
     note_exposure,
@@ -94,7 +96,9 @@ def own_settings(scene: Scene) -> Settings:
     """The settings by the scene's file alone, without ``--set``. Raises InputError."""
     exposure = fixed_exposure_ev(scene) if scene.exposure_ev is None else scene.exposure_ev
     known = scene.exposure_ev is not None or exposure != 0.0
-    given = {"exposure": exposure, **(FIXED_EXPOSURE if known else {}), **scene.settings}
+    gathers = {"gi.bounces": EMISSION_GATHERS} if is_lit_by_emission_only(scene) else {}
+    fixed = FIXED_EXPOSURE if known else {}
+    given = {"exposure": exposure, **fixed, **gathers, **scene.settings}
     return Settings().replace(given, str(scene.path))
 
 

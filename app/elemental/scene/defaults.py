@@ -24,9 +24,18 @@ def is_unlit(scene: Scene) -> bool:
     return not _is_lit_from_outside(scene) and not _emits(scene)
 
 
+EMISSION_GATHERS = 2
+"""Gathers of light where nothing but emission is: the first only shows what the lamps shine on."""
+
+
+def is_lit_by_emission_only(scene: Scene) -> bool:
+    """Whether a scene emits, and has no other light."""
+    return _emits(scene) and not _is_lit_from_outside(scene)
+
+
 def note_emission_only(scene: Scene) -> None:
     """Say in the notes of a scene that only its own emission lights it."""
-    if _emits(scene) and not _is_lit_from_outside(scene):
+    if is_lit_by_emission_only(scene):
         reason = "lit by its own emission only; --set sky.image=FILE adds a sky"
         scene.notes.append(f"{scene.path}: {reason}")
 

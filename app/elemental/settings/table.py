@@ -41,7 +41,8 @@ TABLE = (
     ),
     Setting(
         "gi.bounces", "int", 1,
-        "gathers of indirect light; with n, voxels hold light gathered n-1 times",
+        "gathers of indirect light; with n, voxels hold light gathered n-1 times; 2 where a "
+        "file has no light but emission",
         unit="gathers", lo=0, hi=8, source="[Mittring12] [Crassin11]",
     ),
     Setting(
