@@ -32,7 +32,8 @@ float spot_falloff(Light light, vec3 to_light) {
 // Share of the peak intensity that a luminaire sends towards a point. [LM-63-2002], type C
 float profile_falloff(Light light, vec3 to_light) {
     vec3 across = cross(light.direction_ws, light.profile_axis_ws);
-    float turned = atan(dot(-to_light, across), dot(-to_light, light.profile_axis_ws)) * (0.5 / PI);
+    vec2 around = vec2(dot(-to_light, light.profile_axis_ws), dot(-to_light, across));
+    float turned = dot(around, around) > 1e-12 ? atan(around.y, around.x) * (0.5 / PI) : 0.0;
     float down = acos(clamp(dot(-to_light, light.direction_ws), -1.0, 1.0)) / PI;
     return textureLod(u_light_profiles, vec3(turned, down, float(light.profile)), 0.0).r;
 }

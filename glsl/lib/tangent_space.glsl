@@ -7,7 +7,7 @@ vec3 normal_from_tangent_space(vec3 normal_ts, vec3 normal_ws, vec4 tangent_ws, 
     vec3 n = normalize(normal_ws);
     vec3 t = tangent_ws.xyz - n * dot(n, tangent_ws.xyz);
     float squared = dot(t, t);
-    if (squared < 1e-12) return n * facing;
+    if (!(squared >= 1e-12)) return n * facing;
     t *= inversesqrt(squared);
     vec3 b = cross(n, t) * tangent_ws.w;
     return normalize(t * normal_ts.x + b * normal_ts.y + n * normal_ts.z) * facing;

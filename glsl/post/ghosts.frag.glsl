@@ -2,6 +2,7 @@
 // and mirrored about the centre. [Mittring12 "Image Based Lens Flares": "Scale and mirror image
 // multiple times; soft mask screen borders"]
 #include "shared/lens_flare.glsl"
+#include "lib/packing.glsl"
 
 uniform sampler2D u_blurred;
 uniform sampler2D u_target_like;
@@ -24,5 +25,5 @@ void main() {
         float mask = border_mask(uv);
         if (mask > 0.0) sum += mask * ghost.rgb * textureLod(u_blurred, uv, 0.0).rgb;
     }
-    o_light = vec4(sum, 0.0);
+    o_light = vec4(min(sum, HALF_MAX), 0.0);
 }

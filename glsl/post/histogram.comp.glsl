@@ -15,7 +15,8 @@ const float BLACK = 1e-20;    // log2 stays finite
 shared float histograms[HISTOGRAM_BUCKETS][COLUMNS];
 
 float bucket_position(vec3 radiance) {
-    float ev = log2(max(luminance(radiance), BLACK));
+    float brightness = luminance(radiance);
+    float ev = brightness > BLACK ? log2(brightness) : log2(BLACK);  // what is no number counts as black
     float scaled = (ev - u_exposure.log_min) / u_exposure.log_range;
     return clamp(scaled, 0.0, 1.0) * float(HISTOGRAM_BUCKETS - 1u);
 }

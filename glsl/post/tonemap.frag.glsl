@@ -39,6 +39,7 @@ uniform sampler3D u_lut2;
 flat in float v_exposure;
 out vec4 o_color;
 
+const vec3 BRIGHTEST = vec3(1e10);      // beyond any exposed light that is a number
 const uint GRAIN_STREAM = 0x9e3779b9u;  // apart from the dither's noise
 const float GRAIN_AMPLITUDE = 0.5;      // display range at intensity 1 [inferred]
 
@@ -94,6 +95,7 @@ void main() {
     radiance += bloom;
 #endif
     radiance *= vignette((2.0 * gl_FragCoord.xy - size) / length(size));
+    radiance = min(radiance, BRIGHTEST);  // what overflowed a target stays a number
     vec3 developed = film_curve(max(mat3(u_film.graded_from_scene) * radiance, vec3(0.0)));
     vec3 display = graded(srgb_encode(developed));
     display += GRAIN_AMPLITUDE * u_film.grain * noise.x;

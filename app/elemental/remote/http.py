@@ -23,7 +23,8 @@ REQUEST_S = 5.0
 """Seconds within which a request must arrive whole, and its answer be taken."""
 
 _LINE = re.compile(r"([A-Z]{1,16}) (/[\x21-\x7e]*) HTTP/1\.([01])")
-_HEADER = re.compile(r"([!#$%&'*+.^_`|~0-9A-Za-z-]+):[ \t]*(.*?)[ \t]*")
+_HEADER = re.compile(r"([!#$%&'*+.^_`|~0-9A-Za-z-]+):([^\x00-\x08\x0a-\x1f\x7f]*)")
+"""One way to match: the blanks around a value are stripped afterwards."""
 
 
 @dataclass(frozen=True)
@@ -91,7 +92,7 @@ class Connection:
             header = _HEADER.fullmatch(text)
             if header is None or header[1].lower() in headers:
                 raise RefusedError(400, "a broken or doubled header")
-            headers[header[1].lower()] = header[2]
+            headers[header[1].lower()] = header[2].strip(" \t")
         if "transfer-encoding" in headers:
             raise RefusedError(411, "give a Content-Length")
         length = headers.get("content-length", "0")

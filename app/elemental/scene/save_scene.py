@@ -138,13 +138,37 @@ def _holds(text: str, settings: Mapping[str, Any]) -> bool:
     return all(found.get(key) == toml_edit.plain(value) for key, value in settings.items())
 
 
+FILE_KEYS = frozenset({"file", "ies"})
+"""Keys that name a file whether it is there or not."""
+
+
 def _move_files(document: tomlkit.TOMLDocument, source: Path, target: Path) -> None:
-    """File names count from the scene file's folder: let them name the same files from another."""
-    tables: list[Any] = list(document.get("models", ()))
-    tables += [document["environment"]] if "environment" in document else []
-    for table in tables:
-        if "file" in table:
-            table["file"] = _relative(source / str(table["file"]), target)
+    """File names count from the scene file's folder: let them name the same files from another.
+
+    Outside the settings, a text that names a file there is such a name, whatever its key.
+    """
+    for key, section in document.items():
+        if key != SETTINGS:
+            _move_names(section, source, target)
+
+
+def _move_names(holder: Any, source: Path, target: Path) -> None:
+    """Of a table or an array, and of all in it."""
+    keys: list[Any] = []
+    if isinstance(holder, Mapping):
+        keys = list(holder)
+    elif isinstance(holder, list):
+        keys = list(range(len(holder)))
+    for key in keys:
+        value = holder[key]
+        if isinstance(value, Mapping | list):
+            _move_names(value, source, target)
+        elif isinstance(value, str) and (key in FILE_KEYS or _is_file(source, value)):
+            holder[key] = _relative(source / value, target)
+
+
+def _is_file(folder: Path, name: str) -> bool:
+    return bool(Path(name).suffix) and (folder / name).is_file()
 
 
 def _relative(file: Path, folder: Path) -> str:

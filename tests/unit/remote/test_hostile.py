@@ -33,6 +33,7 @@ from unit.remote.client import TIMEOUT_S, Rig
         (b"GET http://x/ HTTP/1.1\r\n\r\n", 400),
         (b"\x16\x03\x01\x02\x00\r\n\r\n", 400),
         (b"\r\n\r\n", 400),
+        (b"GET /volumes HTTP/1.1\r\na:" + b" " * 8000 + b"\n\r\n\r\n", 400),  # no slow match
     ],
 )
 def test_requests_that_are_none_are_told_so_and_cut(shared: Rig, raw: bytes, status: int) -> None:

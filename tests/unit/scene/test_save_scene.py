@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 
 from cli.small_scene import corner
 from elemental.core.errors import InputError
+from elemental.core.paths import content_root
 from elemental.scene.defaults import default_sun
 from elemental.scene.definitions import find_definition
 from elemental.scene.lights import Light
@@ -91,6 +92,18 @@ def test_saved_elsewhere_it_names_the_same_files(tmp_path: Path) -> None:
     written = tomllib.loads((tmp_path / "there" / "b.toml").read_text())
     assert written["models"][0]["file"] == "../m/a.glb"
     assert written["environment"]["file"] == "../sky.hdr"
+
+
+@pytest.mark.parametrize("name", ["many_lights", "surfaces"])
+def test_a_scene_of_ours_saved_elsewhere_loads_as_it_did(name: str, tmp_path: Path) -> None:
+    """With its profiles and the images of its decals."""
+    here = content_root() / "scenes" / f"{name}.toml"
+    there = tmp_path / "there.toml"
+    save_scene(here, there, Changes())
+    was, now = (load_scene(str(path), default_lights=False) for path in (here, there))
+    assert len(now.lights) == len(was.lights)
+    assert len(now.decals) == len(was.decals)
+    assert [texture.name for texture in now.textures] == [texture.name for texture in was.textures]
 
 
 def test_what_can_not_be_written_is_refused_and_leaves_the_file(tmp_path: Path) -> None:
