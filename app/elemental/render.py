@@ -37,6 +37,7 @@ from elemental.session import (
 )
 
 VIDEO_SUFFIX = ".mp4"
+OTHER_VIDEOS = frozenset({".avi", ".gif", ".mkv", ".mov", ".webm"})
 DEFAULT_NAME = "%05d.png"
 """Of the frames in a folder."""
 VIDEO_FRAMES = ".frames"
@@ -77,8 +78,12 @@ def render(words: Render) -> None:
     )  # fmt: skip
     device = headless_device()
     steps = sequence.render(device, overwrite=words.overwrite)
-    rendered = sum(step.rendered for step in _told(steps, end - first))
-    say(stage.scene.warnings, stage.scene.notes)
+    rendered = 0
+    problems: dict[str, None] = {}
+    for step in _told(steps, end - first):
+        rendered += step.rendered
+        problems.update(dict.fromkeys(step.problems))
+    say([*stage.scene.warnings, *problems], stage.scene.notes)
     if is_video:
         encode(ffmpeg, pattern, first, end - first, words.fps, words.output)
         _remove_frames(pattern.parent, (sequence.file(frame) for frame in range(first, end)))
@@ -106,6 +111,10 @@ def _pattern(output: Path) -> Path:
         return output
     if output.suffix.lower() in SUFFIXES:
         raise InputError("-o", str(output), "needs a frame number, as in %05d.png, or a folder")
+    if output.suffix.lower() in OTHER_VIDEOS and not output.is_dir():
+        raise InputError(
+            "-o", str(output), f"videos are {VIDEO_SUFFIX}; else a folder, or %05d.png"
+        )
     return output / DEFAULT_NAME
 
 

@@ -42,3 +42,20 @@ def test_a_broken_material_is_loud_and_named(tmp_path: Path, line: str, complain
     picture = np.asarray(Image.open(tmp_path / "out.png"))[..., :3].astype(float)
     magenta = (picture[..., 0] > 150) & (picture[..., 2] > 150) & (picture[..., 1] < 90)
     assert magenta.sum() > 50
+
+
+@pytest.mark.parametrize(
+    "words",
+    [("render", "scene.toml", "-o", "frames", "--frames", "0:2", "--fps", "24"),
+     ("shot", "scene.toml", "-o", "out.png", "--ui")],
+    ids=["render", "shot --ui"],
+)  # fmt: skip
+def test_other_doors_name_it_too(tmp_path: Path, words: tuple[str, ...]) -> None:
+    write_corner(tmp_path)
+    (tmp_path / "draft.glsl").write_text(HEADING + "void material(inout Surface s) { s = 1; }\n")
+    (tmp_path / "scene.toml").write_text(SCENE)
+    size = ("--size", "320x240" if "--ui" in words else "32x24")
+    result = elemental(*words, *size, "--set", "gi.resolution=64", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert result.stderr.count("elemental: warning: ") >= 1
+    assert "draft.glsl:5: error: " in result.stderr

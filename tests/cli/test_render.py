@@ -103,6 +103,7 @@ def test_a_missing_encoder_is_told_before_the_first_frame(tmp_path: Path) -> Non
         (("-o", "a", "--frames", "5:5"), "'5:5' is not A:B"),
         (("-o", "a", "--frames", "5"), "'5' is not A:B"),
         (("-o", "a.png"), "needs a frame number, as in %05d.png, or a folder"),
+        (("-o", "a.avi"), "videos are .mp4; else a folder, or %05d.png"),
         (("-o", "a.%03d.jpg"), "the name must end in .png or .exr"),
         (("-o", "a/b/c"), "can't be made"),
         (("-o", "a.mp4", "--size", "33x24"), "an .mp4 needs even sides"),

@@ -34,6 +34,8 @@ class Step:
     frame: int
     file: Path
     rendered: bool
+    problems: tuple[str, ...] = ()
+    """What is wrong with materials and effects so far, a line each."""
 
 
 @dataclass(frozen=True)
@@ -126,11 +128,12 @@ class _Run:
         for frame in frames:
             is_new = frame not in there
             self._render(frame, save=is_new)
+            assert self._renderer is not None, "a frame has just been rendered"
             if frame == frames[0] + BLOCK - 1 - LEAD_IN:
-                assert self._renderer is not None, "a frame has just been rendered"
                 self.manifest.states[frame] = self._renderer.history()
                 self.manifest.write()
-            yield Step(frame, self.sequence.file(frame), rendered=is_new)
+            problems = tuple(self._renderer.problems())
+            yield Step(frame, self.sequence.file(frame), is_new, problems)
 
     def _begin(self, start: int) -> None:
         """A renderer whose next frame is ``start``, the same however the run came here."""
