@@ -22,3 +22,8 @@ def environment_brdf(f0: float | Array, roughness: float | Array, n_o_v: float |
         + r * (1.073 + s * (25.026 + 2.432 * s) + r * (-9.110 - 15.918 * s + 7.639 * r))
     )  # fmt: skip
     return np.asarray(f0 * np.maximum(1.0 - loss - grazing, 0.0) + grazing)
+
+
+MIRRORED_BY_ROUGH_DIELECTRIC = 0.0225
+"""Share of a hemisphere's light that a dielectric of roughness 1 mirrors (lib/brdf.glsl,
+mirrored_share)."""

@@ -7,7 +7,6 @@ light_sizes.toml, the same lamp at five sizes over a glossy floor, with festival
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
@@ -19,6 +18,7 @@ from atrium.glb import GlbWriter
 from atrium.layout import BAY, BAYS_X, EAVES, GALLERY, HALF_X, HALF_Z, LOGGIA
 from atrium.mesh import indexed
 from atrium.shapes import revolve
+from made_files import write_all
 from rooms.room import Paint, Room, ball, span
 
 SCENES = Path(__file__).resolve().parent.parent / "content" / "scenes"
@@ -286,11 +286,7 @@ def files() -> dict[str, bytes]:
 
 def main() -> None:
     """Write all files."""
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else SCENES
-    (folder / "festival").mkdir(parents=True, exist_ok=True)
-    for name, content in files().items():
-        (folder / name).write_bytes(content)
-        print(f"{folder / name}: {len(content)} bytes")
+    write_all(files(), SCENES)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,6 @@ leaf of one sheet and a bowl with walls a few millimetres thick, to be lit from 
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,7 @@ from numpy.typing import NDArray
 
 from atrium.glb import GlbWriter
 from atrium.mesh import Mesh
+from made_files import write_all
 
 FOLDER = Path(__file__).resolve().parent.parent / "content" / "scenes" / "material_ball"
 MAKER = "tools/make_material_ball.py"
@@ -176,11 +176,7 @@ def files() -> dict[str, bytes]:
 
 def main() -> None:
     """Write all of them and say how large they are."""
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else FOLDER
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, content in files().items():
-        (folder / name).write_bytes(content)
-        print(f"{folder / name}: {len(content)} bytes")
+    write_all(files(), FOLDER)
 
 
 if __name__ == "__main__":

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
+from made_files import write_all
 from rooms.plans import PLANS
 from rooms.sky import windows_hdr
 
@@ -19,11 +19,7 @@ def files() -> dict[str, bytes]:
 
 def main() -> None:
     """Write all of them and say how large they are."""
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else FOLDER
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, content in files().items():
-        (folder / name).write_bytes(content)
-        print(f"{folder / name}: {len(content)} bytes")
+    write_all(files(), FOLDER)
 
 
 if __name__ == "__main__":

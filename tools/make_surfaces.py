@@ -7,7 +7,6 @@ a bottle and a window pane. PNG files: the decals' pictures.
 from __future__ import annotations
 
 import json
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +14,7 @@ import numpy as np
 
 from atrium.glb import GlbWriter
 from atrium.mesh import Mesh
+from made_files import write_all
 from make_material_ball import lathe, material, surface
 from surfaces.pictures import PICTURES
 
@@ -158,11 +158,7 @@ def files() -> dict[str, bytes]:
 
 def main() -> None:
     """Write all of them and say how large they are."""
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else FOLDER
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, content in files().items():
-        (folder / name).write_bytes(content)
-        print(f"{folder / name}: {len(content)} bytes")
+    write_all(files(), FOLDER)
 
 
 if __name__ == "__main__":

@@ -18,6 +18,7 @@ from elemental.frame import Renderer
 from elemental.gpu.device import Device
 from elemental.scene.model import Scene
 from elemental.settings import Settings
+from formulas import MIRRORED_BY_ROUGH_DIELECTRIC
 from gpu.rig import IDENTITY, camera, material, scene, vector
 from gpu.voxel.scenes import TURNS, colored, part
 from shapes import box, inward
@@ -25,9 +26,7 @@ from shapes import box, inward
 Array = npt.NDArray[Any]
 
 ALBEDO = 0.9
-MIRRORED = 0.0225
-"""Part of the albedo that a dielectric of roughness 1 mirrors (lib/brdf.glsl, mirrored_share)."""
-LIMIT = 1.0 + (ALBEDO - MIRRORED) / (1.0 - ALBEDO)
+LIMIT = 1.0 + (ALBEDO - MIRRORED_BY_ROUGH_DIELECTRIC) / (1.0 - ALBEDO)
 """What the camera sees: emission and diffusely reflected light of walls that end at 10."""
 SIDE_M, WALL_M = 2.0, 0.15
 CAMERA = camera(vector(-0.3, 0.1, 0.4), vector(0.5, -0.2, -0.6), fov_y=1.2)
@@ -38,7 +37,7 @@ TURN = TURNS["turned"]
 
 def room(world: Array, thick: bool) -> Scene:
     """The glowing inside of a cube: a sheet, or the inside of a black block."""
-    diffuse = ALBEDO - MIRRORED
+    diffuse = ALBEDO - MIRRORED_BY_ROUGH_DIELECTRIC
     glow = material(
         base_color=vector(diffuse, diffuse, diffuse, 1), emissive=vector(1, 1, 1), roughness=1.0
     )

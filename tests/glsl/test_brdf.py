@@ -9,6 +9,7 @@ import numpy.typing as npt
 import pytest
 
 from elemental.gpu.device import Device
+from formulas import MIRRORED_BY_ROUGH_DIELECTRIC, environment_brdf
 from glsl.harness import run_glsl
 
 Array = npt.NDArray[Any]
@@ -167,3 +168,17 @@ def test_the_environment_term_is_ggx_s_share_of_a_uniform_sky(device: Device) ->
     )
     assert np.abs(got - want).max() < 0.05
     assert np.abs(got - want).mean() < 0.008
+
+
+@pytest.mark.parametrize("f0", [0.04, 0.5, 1.0])
+def test_the_mirrored_share_is_the_environments_mean(device: Device, f0: float) -> None:
+    """Over the hemisphere, by cosine: polynomials 0.007 and 0.004 off at most."""
+    roughness = np.linspace(0.0, 1.0, 21)
+    got = run_glsl(device, BRDF, "mirrored_share(vec3(f0), r)",
+                   {"f0": np.full(21, f0), "r": roughness}, "vec3")[:, 0]  # fmt: skip
+    cosines = (np.arange(400) + 0.5) / 400
+    shares = environment_brdf(f0, roughness[:, None], cosines[None])
+    wanted = (2.0 * cosines * shares).mean(axis=1)
+    np.testing.assert_allclose(got, wanted, atol=0.011)
+    if f0 == 0.04:
+        assert got[-1] == pytest.approx(MIRRORED_BY_ROUGH_DIELECTRIC, abs=5e-4)

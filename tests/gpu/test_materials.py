@@ -12,6 +12,7 @@ from elemental.core.layout import layouts
 from elemental.gpu.device import Device
 from elemental.passes.decal import Decals
 from elemental.scene.model import Decal, Texture, TextureSlot
+from formulas import MIRRORED_BY_ROUGH_DIELECTRIC
 from gpu.artist import ABOVE, HALVES, Artist, albedo, draws, emission, halves
 from gpu.rig import IDENTITY, MakeRig, at, camera, material, mesh, read, scene, sun, vector
 from gpu.voxel.stage import Stage
@@ -49,7 +50,7 @@ def test_voxels_are_made_of_it(device: Device, artist: Artist) -> None:
     colors = stage.fragments["albedo"].copy().view(np.uint8).reshape(-1, 4)[:, :3]
     x = (stage.fragments["position"] & 1023) / 32.0 - 0.5
     assert len(x) > 500
-    mirrored = 0.0225 * 255.0  # by a dielectric of roughness 1: lib/brdf.glsl
+    mirrored = 255.0 * MIRRORED_BY_ROUGH_DIELECTRIC
     assert np.abs(colors[x < -0.05] - np.array([64, 0, 0]) - mirrored).max() <= 1
     assert np.abs(colors[x > 0.05] - np.array([0, 64, 0]) - mirrored).max() <= 1
     stage.release()

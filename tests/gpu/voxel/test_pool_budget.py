@@ -10,24 +10,13 @@ import pytest
 from elemental.gpu.device import Device
 from elemental.passes.voxel import sizing
 from elemental.passes.voxel.lighting import VoxelLighting
-from elemental.passes.voxel.octree import Capacity, Counts
+from elemental.passes.voxel.octree import Capacity
 from gpu.voxel.scenes import jumble
 from gpu.voxel.stage import MakeStage, Stage
 from gpu.voxel.test_moving_overflow import crowd
+from gpu.voxel.test_pool_overflow import ASKED
 from gpu.voxel.walk import show
 
-ASKED = Counts(
-    fragments=50_000,
-    fragments_dropped=0,
-    tiles=9_000,
-    tiles_dropped=0,
-    bricks=40_000,
-    bricks_dropped=0,
-    leaves=30_000,
-    interior=10_000,
-    leaves_asked=30_000,
-    interior_asked=10_000,
-)
 ENOUGH = sizing.capacity_for(ASKED, 1 << 40, keeps_slots=True)
 
 

@@ -241,23 +241,26 @@ def test_a_budget_too_small_is_kept_and_the_drops_stay_counted(device: Device) -
         item.release()
 
 
+ASKED = Counts(
+    fragments=50_000,
+    fragments_dropped=0,
+    tiles=9_000,
+    tiles_dropped=0,
+    bricks=40_000,
+    bricks_dropped=0,
+    leaves=30_000,
+    interior=10_000,
+    leaves_asked=30_000,
+    interior_asked=10_000,
+)
+"""Of a scene, as the GPU counts."""
+
+
 def test_a_budget_cuts_no_more_than_it_must() -> None:
-    counts = Counts(
-        fragments=50_000,
-        fragments_dropped=0,
-        tiles=9_000,
-        tiles_dropped=0,
-        bricks=40_000,
-        bricks_dropped=0,
-        leaves=30_000,
-        interior=10_000,
-        leaves_asked=30_000,
-        interior_asked=10_000,
-    )
-    wanted = sizing.capacity_for(counts, 1 << 40)
+    wanted = sizing.capacity_for(ASKED, 1 << 40)
     assert (wanted.tiles, wanted.bricks, wanted.leaves) == (9_000, 40_000, 30_000)
     for budget in (wanted.nbytes() - 1, wanted.nbytes() // 2):
-        cut = sizing.capacity_for(counts, budget)
+        cut = sizing.capacity_for(ASKED, budget)
         assert cut.nbytes() <= budget
         one_more = replace(cut, bricks=cut.bricks + 1, leaves=cut.leaves + 1)
         assert one_more.nbytes() > budget

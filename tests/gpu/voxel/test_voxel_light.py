@@ -13,6 +13,7 @@ import pytest
 from elemental.gpu.device import Device
 from elemental.passes.area_lights import pack_area_lights
 from elemental.scene.model import Environment, Light, Scene
+from formulas import MIRRORED_BY_ROUGH_DIELECTRIC
 from gpu.rig import at, scene, sun, vector
 from gpu.voxel.pools import Pools, leaf_values, rgb9e5_values
 from gpu.voxel.scenes import colored, part
@@ -22,8 +23,7 @@ from shapes import box, quad
 Array = npt.NDArray[Any]
 
 ALBEDO = vector(0.8, 0.4, 0.1)
-REFLECTED = ALBEDO + 0.0225
-"""With what a dielectric of roughness 1 mirrors (lib/brdf.glsl, mirrored_share)."""
+REFLECTED = ALBEDO + MIRRORED_BY_ROUGH_DIELECTRIC
 EMISSION = vector(0.25, 0.0, 1.5)
 STRAIGHT, SLANTED = vector(0, -1, 0), vector(0.2, -1.0, 0.6)
 
