@@ -88,19 +88,26 @@ def _add_set_flag(parser: _Parser) -> None:
     )
 
 
-def _add_shot_flags(parser: _Parser) -> None:
+def _add_output_flags(parser: _Parser, metavar: str, text: str) -> None:
+    """What a command writes, and the time from one of its frames to the next."""
     parser.add_argument(
         "-o",
         "--output",
         type=Path,
         required=True,
-        metavar="OUT.png|OUT.exr",
-        help="picture to write, one a frame if its name holds %%04d (required, no default)",
+        metavar=metavar,
+        help=f"{text} (required, no default)",
     )
+    fps = "frames a second of scene time (default: 30)"
+    parser.flag("--fps", "F", _number(1e-3, 1e4), 30.0, fps)
+
+
+def _add_shot_flags(parser: _Parser) -> None:
+    text = "picture to write, one a frame if its name holds %%04d"
+    _add_output_flags(parser, "OUT.png|OUT.exr", text)
     _add_common_flags(parser)
     flag = parser.flag
     flag("--frames", "N", _whole(1, 10**6), 1, "frames to render; the last is kept (default: 1)")
-    flag("--fps", "F", _number(1e-3, 1e4), 30.0, "frames a second of scene time (default: 30)")
     flag("--time", "S", _number(0, 1e6), 0.0, "scene time of frame 0 in seconds (default: 0)")
     flag("--seed", "K", _whole(0, 2**31 - 1), 0, "seed of random choices, none so far (default: 0)")
     _add_viewpoint_flags(parser)
@@ -121,18 +128,11 @@ def _add_viewpoint_flags(parser: _Parser) -> None:
 
 
 def _add_render_flags(parser: _Parser) -> None:
-    parser.add_argument(
-        "-o",
-        "--output",
-        type=Path,
-        required=True,
-        metavar="DIR|NAME%%05d.png|FILE.mp4",
-        help="folder, numbered pictures (.png, .exr) or video to make (required, no default)",
-    )
+    metavar = "DIR|NAME%05d.png|FILE.mp4"
+    _add_output_flags(parser, metavar, "folder, numbered pictures (.png, .exr) or video to make")
     _add_common_flags(parser)
     flag = parser.flag
     flag("--frames", "A:B", _span, None, "frames A to B-1 (default: the camera path's)")
-    flag("--fps", "F", _number(1e-3, 1e4), 30.0, "frames a second of scene time (default: 30)")
     _add_viewpoint_flags(parser)
     parser.add_argument(
         "--overwrite", action="store_true", help="make every frame anew (default: keep whole ones)"

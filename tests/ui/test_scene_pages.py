@@ -18,6 +18,8 @@ from imgui_bundle import imgui
 from elemental.core.images import read_png_jpeg_webp
 from elemental.scene.volumes import Volume, rotation_rows
 from elemental.ui.in_view import Lens, angles_of, outline, placed, placement
+from elemental.ui.sequence_job import SequenceWords
+from ui.conftest import PICTURE
 from ui.robot import Robot
 
 Hands = Callable[..., Robot]
@@ -182,6 +184,25 @@ def test_a_screenshot_is_the_picture_without_the_panel(
     robot.frames()
     written = read_png_jpeg_webp(next(tmp_path.glob("elemental-*.png")))
     assert np.array_equal(written[..., :3], robot.pixels()[..., :3])
+
+
+def test_a_picture_taken_amid_a_sequence_shows_the_desks_own_frame(
+    hands: Hands, scene_file: Path, tmp_path: Path
+) -> None:
+    robot = hands(scene_file, page="Sequence", size=TALL)
+    desk = robot.desk
+    desk.pages.sequence = SequenceWords(tmp_path / "made", size=PICTURE, frames=(0, 5))
+    desk.act("sequence.start")  # renders into targets of the same description
+    desk.rides = False
+    desk.fly.position += 0.3  # the sequence keeps the place where it began
+    robot.frames(2)
+    amid = robot.pixels()
+    desk.act("sequence.stop")
+    assert desk.job is not None
+    assert 2 <= desk.job.done < 6
+    assert np.array_equal(amid, robot.pixels())
+    made = read_png_jpeg_webp(tmp_path / "made" / "00001.png")
+    assert not np.array_equal(made[..., :3], amid[..., :3])
 
 
 ANGLES = st.tuples(*[st.floats(-180, 180)] * 3)
