@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from elemental.core import transforms
-from elemental.core.layout import Block
+from elemental.core.layout import Block, layouts, pack
 from elemental.frame import Renderer
 from elemental.gpu.device import Device
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import AnyTexture, TextureHandle
-from elemental.passes.post.motion_blur import motion_blur
+from elemental.passes.post.motion_blur import longest_streaks, motion_blur
 from elemental.scene.extent import settle
 from elemental.scene.model import Camera
 from elemental.scene.motion import RigBuilder
@@ -110,6 +110,32 @@ def test_a_first_frame_a_still_one_and_one_after_a_cut_run_nothing(darkroom: Mak
     assert not blurs(2.0, 5.0)  # a cut
     room.set(motion_blur__amount=0.0)
     assert not blurs(3.0, 5.1)
+
+
+def test_the_longest_streak_of_each_tile_is_found(darkroom: MakeDarkroom) -> None:
+    """Down columns, then along rows, tiles at the edges cut short: as one search finds it."""
+    tile, (height, width) = 7, (25, 38)
+    motion = np.random.default_rng(3).normal(0.0, 4.0, (height, width, 4)).astype(np.float16)
+
+    block = pack(
+        layouts().block("Motion"),
+        prev_clip_from_world=np.eye(4), shutter=1.0, most_px=float(tile), tile=tile,
+    )  # fmt: skip
+
+    def passes(g: Graph, picture: AnyTexture, _: AnyTexture) -> TextureHandle:
+        found: Any = longest_streaks(g, picture, block)
+        return found
+
+    room = darkroom()
+    got = room.run(passes, motion)[::-1, :, :2]
+    upright = motion[::-1, :, :2].astype(np.float64)
+    assert got.shape[:2] == (4, 6)
+    for row, column in np.ndindex(got.shape[:2]):
+        part = upright[row * tile : (row + 1) * tile, column * tile : (column + 1) * tile]
+        streaks_px = part.reshape(-1, 2)
+        longest = streaks_px[np.argmax((streaks_px**2).sum(axis=1))]
+        np.testing.assert_array_equal(got[row, column], longest)
+    assert room.passes() == ["post/motion_longest.y", "post/motion_longest.x"]
 
 
 def test_what_moves_streaks_and_the_rest_stays(device: Device) -> None:

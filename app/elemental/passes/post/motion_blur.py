@@ -26,7 +26,10 @@ from elemental.passes.scene_pack import SOLID
 
 CAMERA = Raster(TRIANGLE, "post/motion_camera.frag.glsl")
 OBJECTS = Raster("post/motion_objects.vert.glsl", "post/motion_objects.frag.glsl")
-TILES = Raster(TRIANGLE, "post/motion_tiles.frag.glsl")
+LONGEST = [
+    Raster(TRIANGLE, "post/motion_longest.frag.glsl", defines={"AXIS": axis}) for axis in (0, 1)
+]
+"""Along a tile's row, and down its column."""
 BLUR = Raster(TRIANGLE, "post/motion_blur.frag.glsl")
 VISIBLE = RasterState(depth_test="equal", depth_write=False, color_mask=(True, True, False, False))
 """What the G-buffer shows; the depth along the view stays."""
@@ -74,10 +77,7 @@ def motion_blur(
 
 
 def _blur(g: Graph, picture: TextureHandle, motion: TextureHandle, block: Block) -> TextureHandle:
-    tile = int(block["tile"])
-    tiles = (-(-picture.width // tile), -(-picture.height // tile))
-    longest = g.texture("motion.longest", size=tiles, format=RG16F)
-    g.raster(TILES, color=longest, reads={"u_motion_px": motion}, params={"Motion": block})
+    longest = longest_streaks(g, motion, block)
     blurred = g.texture("motion_blur", like=picture)
     g.raster(
         BLUR,
@@ -86,6 +86,23 @@ def _blur(g: Graph, picture: TextureHandle, motion: TextureHandle, block: Block)
         params={"Motion": block},
     )
     return blurred
+
+
+def longest_streaks(g: Graph, motion: AnyTexture, block: Block) -> AnyTexture:
+    """Of each tile of ``motion`` (H, W), the streak that is longest: one texel a tile, RG16F."""
+    tile, (width, height) = int(block["tile"]), motion.size[:2]
+    columns, rows = -(-width // tile), -(-height // tile)
+    longest = motion
+    for axis, size in ((1, (width, rows)), (0, (columns, rows))):  # threads side by side read so
+        along, longest = longest, g.texture("motion.longest", size=size, format=RG16F)
+        g.raster(
+            LONGEST[axis],
+            f"post/motion_longest.{'xy'[axis]}",
+            color=longest,
+            reads={"u_motion_px": along},
+            params={"Motion": block},
+        )
+    return longest
 
 
 def _block(before: Block, s: Mapping[str, Any], width: int) -> Block:
