@@ -13,7 +13,7 @@ from urllib.parse import unquote
 
 from elemental.remote.changes import RefusedError, description
 from elemental.remote.mailbox import Mailbox
-from elemental.remote.pace import Pace
+from elemental.remote.pace import Pace, Paces
 
 MAX_HEAD = 8192
 """Bytes of a request line with its headers."""
@@ -39,19 +39,35 @@ class Request:
     body: bytes
 
 
+@dataclass(eq=False)
+class Guest:
+    """Who is at the other end of a connection."""
+
+    host: str
+    is_known: bool = False
+    """Whether it has shown the token."""
+
+
+@dataclass(frozen=True)
+class Door:
+    """What all connections share. Those who know the token never wait for those who don't."""
+
+    mailbox: Mailbox
+    token: str
+    known: Paces
+    """Of those who know the token, by host: faster ones wait."""
+    strangers: Pace
+    """Answers to all others together; without a permit they are cut without one."""
+
+
 class Connection:
-    """Serves requests of one client until it goes, errs or is too slow."""
+    """Serves requests of one client until it goes, errs, is too slow or lacks the token."""
 
     def __init__(
-        self,
-        reader: asyncio.StreamReader,
-        writer: asyncio.StreamWriter,
-        mailbox: Mailbox,
-        token: str,
-        pace: Pace,
+        self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, door: Door, guest: Guest
     ) -> None:
         self._reader, self._writer = reader, writer
-        self._mailbox, self._token, self._pace = mailbox, token, pace
+        self._door, self._guest = door, guest
 
     async def serve(self) -> None:
         """Answer one request after the other; ends by itself."""
@@ -69,10 +85,13 @@ class Connection:
         try:
             async with asyncio.timeout(REQUEST_S):
                 request = await self._read()
+            self._check_token(request)
             goes_on = request.minor > 0 and request.headers.get("connection", "") != "close"
-            await self._pace.wait()
+            await self._door.known.of(self._guest.host).wait()
             status, answer = HTTPStatus.OK, self._answer(request)
         except RefusedError as error:
+            if not (self._guest.is_known or self._door.strangers.take()):
+                return False
             status, answer = HTTPStatus(error.status), {"error": str(error)}
         async with asyncio.timeout(REQUEST_S):
             await self._write(status, answer, goes_on)
@@ -105,11 +124,14 @@ class Connection:
         body = await self._reader.readexactly(int(length))
         return Request(match[1], int(match[3]), match[2], headers, body)
 
+    def _check_token(self, request: Request) -> None:
+        given = request.headers.get("authorization", "").encode("latin-1")
+        self._guest.is_known = hmac.compare_digest(given, f"Bearer {self._door.token}".encode())
+        if not self._guest.is_known:
+            raise RefusedError(401, "the token is missing or wrong")
+
     def _answer(self, request: Request) -> dict[str, Any]:
         """What the request asks for, done. Raises RefusedError."""
-        given = request.headers.get("authorization", "").encode("latin-1")
-        if not hmac.compare_digest(given, f"Bearer {self._token}".encode()):
-            raise RefusedError(401, "the token is missing or wrong")
         path = request.path.partition("?")[0]
         root, *parts = [unquote(part) for part in path.removeprefix("/").split("/")]
         if root != "volumes" or len(parts) > 2:
@@ -117,9 +139,9 @@ class Connection:
         if request.method != ("PUT" if len(parts) == 2 else "GET"):
             raise RefusedError(405, "GET /volumes, GET /volumes/NAME, PUT /volumes/NAME/PROPERTY")
         if len(parts) == 2:
-            change = self._mailbox.put(parts[0], parts[1], parse_value(request.body))
+            change = self._door.mailbox.put(parts[0], parts[1], parse_value(request.body))
             return {"volume": change.volume, "property": change.property, "value": change.value}
-        volumes = [description(volume) for volume in self._mailbox.volumes()]
+        volumes = [description(volume) for volume in self._door.mailbox.volumes()]
         if not parts:
             return {"volumes": volumes}
         for volume in volumes:

@@ -1,9 +1,10 @@
-"""A bound on how often something happens."""
+"""Bounds on how often something happens."""
 
 from __future__ import annotations
 
 import asyncio
 import time
+from collections import OrderedDict
 from collections.abc import Callable
 
 
@@ -16,11 +17,17 @@ class Pace:
         self._rate, self._burst, self._clock = rate, burst, clock
         self._permits, self._then = burst, clock()
 
+    def take(self) -> bool:
+        """Take a permit if one is there now."""
+        self._refill()
+        if self._permits < 1.0:
+            return False
+        self._permits -= 1.0
+        return True
+
     def delay(self) -> float:
         """Take a permit; seconds until it is valid. Permits are given in the order of the calls."""
-        now = self._clock()
-        self._permits = min(self._permits + (now - self._then) * self._rate, self._burst)
-        self._then = now
+        self._refill()
         self._permits -= 1.0
         return max(-self._permits / self._rate, 0.0)
 
@@ -29,3 +36,27 @@ class Pace:
         delay = self.delay()
         if delay > 0.0:
             await asyncio.sleep(delay)
+
+    def _refill(self) -> None:
+        now = self._clock()
+        self._permits = min(self._permits + (now - self._then) * self._rate, self._burst)
+        self._then = now
+
+
+class Paces:
+    """A Pace for each of the ``most`` clients that were heard last."""
+
+    def __init__(self, rate: float, burst: float, most: int) -> None:
+        self._rate, self._burst, self._most = rate, burst, most
+        self._paces: OrderedDict[str, Pace] = OrderedDict()
+
+    def of(self, client: str) -> Pace:
+        """Whose is new begins with all of its permits."""
+        pace = self._paces.pop(client, None) or Pace(self._rate, self._burst)
+        self._paces[client] = pace
+        if len(self._paces) > self._most:
+            self._paces.popitem(last=False)
+        return pace
+
+    def __len__(self) -> int:
+        return len(self._paces)

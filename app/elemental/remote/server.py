@@ -7,24 +7,42 @@ import contextlib
 import secrets
 import socket
 import threading
-from collections.abc import Coroutine
+from collections import Counter
+from collections.abc import Coroutine, Iterator
 from typing import Any
 
 from elemental.core.errors import InputError
 from elemental.remote import osc
-from elemental.remote.http import MAX_HEAD, Connection
+from elemental.remote.http import MAX_HEAD, Connection, Door, Guest
 from elemental.remote.mailbox import Mailbox
-from elemental.remote.pace import Pace
+from elemental.remote.pace import Pace, Paces
 from elemental.scene.model import Scene
 from elemental.settings import Settings
 
 LOOPBACK = "127.0.0.1"
 MAX_CONNECTIONS = 16
-"""Served at once; more wait unaccepted in the system's queue."""
+"""Served at once. One more takes the place of a client that has not shown the token yet; where all
+have, it waits unaccepted in the system's queue."""
+BACKLOG = 128
+"""Connections in the system's queue."""
+ARRIVALS_PER_S = 1000.0
+"""Connections accepted: bounds what those without the token cost the frame."""
+MAX_CLIENTS = 32
+"""Hosts with the token whose pace is kept; each has its own."""
 REQUESTS_PER_S = 200.0
-"""HTTP requests, and as many datagrams: three faders at 60 Hz. Faster clients wait."""
+"""HTTP requests of a host with the token: three faders at 60 Hz. Faster clients wait."""
 BURST = 50.0
 """Requests that may come at once."""
+REFUSALS_PER_S = 20.0
+"""Answers to clients without the token, all together: a hand that errs gets one."""
+DATAGRAMS_PER_S = 1000.0
+"""Of a host with the token: sixteen faders at 60 Hz. Faster ones get lost."""
+DATAGRAM_BURST = 250.0
+DRAINS_PER_S = 200.0
+"""Looks at arrived datagrams a second."""
+DRAINED = 256
+"""Datagrams taken at a look, about what the system's queue holds; those without the token cost a
+search for it each."""
 STOP_S = 2.0
 """How long the end of the program waits for the thread."""
 ACCEPT_RETRY_S = 0.2
@@ -99,7 +117,7 @@ class Remote:
                 listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             listener.bind(address)
             if kind == socket.SOCK_STREAM:
-                listener.listen(MAX_CONNECTIONS)
+                listener.listen(BACKLOG)
         except OSError as error:
             reason = f"can't be listened on ({error.strerror})"
             raise InputError(flag, f"{host} port {port}", reason) from error
@@ -123,7 +141,11 @@ class Remote:
 
     async def _serve(self) -> None:
         self._tasks: set[asyncio.Task[None]] = set()
-        self._pace = Pace(REQUESTS_PER_S, BURST)
+        self._guests: dict[asyncio.Task[None], Guest] = {}
+        self._left = asyncio.Event()
+        known = Paces(REQUESTS_PER_S, BURST, MAX_CLIENTS)
+        strangers = Pace(REFUSALS_PER_S, REFUSALS_PER_S)
+        self._door = Door(self.mailbox, self.token, known, strangers)
         if self._http is not None:
             self._start(self._accept(self._http))
         if self._osc is not None:
@@ -145,39 +167,70 @@ class Remote:
             self.faults += 1
 
     async def _accept(self, listener: socket.socket) -> None:
-        slots = asyncio.Semaphore(MAX_CONNECTIONS)
+        arrivals = Pace(ARRIVALS_PER_S, BURST)
         while True:
-            await slots.acquire()
+            while len(self._guests) >= MAX_CONNECTIONS and self._stranger() is None:
+                self._left.clear()
+                await self._left.wait()
+            await arrivals.wait()
             try:
-                client, _ = await self._loop.sock_accept(listener)
+                client, address = await self._loop.sock_accept(listener)
             except OSError:
-                slots.release()
                 await asyncio.sleep(ACCEPT_RETRY_S)
                 continue
-            task = self._start(self._converse(client))
-            task.add_done_callback(lambda _: slots.release())
+            stranger = self._stranger() if len(self._guests) >= MAX_CONNECTIONS else None
+            if stranger is not None:
+                stranger.cancel()
+            guest = Guest(address[0])
+            task = self._start(self._converse(client, guest))
+            self._guests[task] = guest
+            task.add_done_callback(self._gone)
+            task.add_done_callback(lambda _, client=client: client.close())
 
-    async def _converse(self, client: socket.socket) -> None:
+    def _stranger(self) -> asyncio.Task[None] | None:
+        """Who makes room: the oldest without the token, of the host that has most of them."""
+        unknown = {task: guest.host for task, guest in self._guests.items() if not guest.is_known}
+        crowds = Counter(unknown.values())
+        return max(unknown, key=lambda task: crowds[unknown[task]], default=None)
+
+    def _gone(self, task: asyncio.Task[None]) -> None:
+        self._guests.pop(task, None)
+        self._left.set()
+
+    async def _converse(self, client: socket.socket, guest: Guest) -> None:
         reader = asyncio.StreamReader(limit=MAX_HEAD, loop=self._loop)
         protocol = asyncio.StreamReaderProtocol(reader, loop=self._loop)
         try:
             transport, _ = await self._loop.connect_accepted_socket(lambda: protocol, client)
         except OSError:
-            client.close()
             return
         writer = asyncio.StreamWriter(transport, protocol, reader, self._loop)
-        await Connection(reader, writer, self.mailbox, self.token, self._pace).serve()
+        await Connection(reader, writer, self._door, guest).serve()
 
     async def _receive(self, listener: socket.socket) -> None:
-        pace = Pace(REQUESTS_PER_S, BURST)
+        looks = Pace(DRAINS_PER_S, 1.0)
+        known = Paces(DATAGRAMS_PER_S, DATAGRAM_BURST, MAX_CLIENTS)
+        token = self.token.encode()
         while True:
-            await pace.wait()
+            await looks.wait()
             try:
-                datagram = await self._loop.sock_recv(listener, osc.MAX_DATAGRAM + 1)
+                first = await self._loop.sock_recvfrom(listener, osc.MAX_DATAGRAM + 1)
             except OSError:  # such as a port that is closed on the other side
                 await asyncio.sleep(ACCEPT_RETRY_S)
                 continue
-            osc.receive(datagram, self.mailbox, self.token)
+            for datagram, host in _arrived(listener, *first):
+                if token in datagram and known.of(host).take():
+                    osc.receive(datagram, self.mailbox, self.token)
+
+
+def _arrived(listener: socket.socket, datagram: bytes, address: Any) -> Iterator[tuple[bytes, str]]:
+    """Datagrams and their hosts: the given one and those that wait behind it."""
+    for _ in range(DRAINED):
+        yield datagram, address[0]
+        try:
+            datagram, address = listener.recvfrom(osc.MAX_DATAGRAM + 1)
+        except OSError:  # none is left, or a port is closed on the other side
+            return
 
 
 def _place(listener: socket.socket) -> str:

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 
 from elemental.core.errors import InputError
 from elemental.remote import http
+from elemental.remote.pace import Paces
 from elemental.remote.server import LOOPBACK, MAX_CONNECTIONS, Remote
 from elemental.scene.volumes import Volume
 from unit.remote.client import TIMEOUT_S, Rig
@@ -117,8 +118,9 @@ def test_clients_without_pause_are_slowed_and_frames_are_not(rig: Rig) -> None:
 
     def flood(number: int) -> None:
         connection = rig.connection()
+        headers = {"Authorization": f"Bearer {rig.remote.token}"}
         while not ends.is_set():
-            connection.request("GET", "/volumes")
+            connection.request("GET", "/volumes", headers=headers)
             connection.getresponse().read()
             served[number] += 1
         connection.close()
@@ -138,6 +140,51 @@ def test_clients_without_pause_are_slowed_and_frames_are_not(rig: Rig) -> None:
     elapsed = time.monotonic() - began
     assert 0 < sum(served) <= 50 + 200 * elapsed + len(served)
     assert longest < 0.25  # generous: other work shares the machine
+
+
+def test_a_flood_without_the_token_does_not_keep_its_owner_out(rig: Rig) -> None:
+    """Many connections, each with more requests than are answered in a while."""
+    crowd = [socket.create_connection(rig.address, TIMEOUT_S) for _ in range(3 * MAX_CONNECTIONS)]
+    for connection in crowd:
+        connection.sendall(b"GET /volumes HTTP/1.1\r\n\r\n" * 60)
+    began = time.monotonic()
+    for number in range(5):
+        assert rig.put("/volumes/cellar/weight", number / 8)[0] == 200
+    assert time.monotonic() - began < 2.0  # generous: 1/200 s would do
+    assert rig.frame()[0].blend_weight == 0.5
+    for connection in crowd:
+        connection.close()
+
+
+def test_strangers_are_refused_in_so_many_words_only_now_and_then(rig: Rig) -> None:
+    refused = [rig.send(b"GET /volumes HTTP/1.1\r\n\r\n") for _ in range(100)]
+    told = sum(answer.startswith(b"HTTP/1.1 401 ") for answer in refused)
+    assert 1 <= told < 60
+    assert set(refused[-20:]) & {b""}
+    assert rig.put("/volumes/cellar/weight", 0.5)[0] == 200
+
+
+def test_who_knows_the_token_is_not_cut_for_newer_ones(rig: Rig) -> None:
+    connection = rig.connection()
+    headers = {"Authorization": f"Bearer {rig.remote.token}"}
+    connection.request("GET", "/volumes", headers=headers)
+    connection.getresponse().read()
+    crowd = [socket.create_connection(rig.address, TIMEOUT_S) for _ in range(3 * MAX_CONNECTIONS)]
+    assert rig.put("/volumes/cellar/weight", 0.5)[0] == 200
+    connection.request("GET", "/volumes", headers=headers)
+    assert connection.getresponse().status == 200
+    connection.close()
+    for other in crowd:
+        other.close()
+
+
+def test_each_client_has_its_own_pace_and_few_are_kept() -> None:
+    paces = Paces(rate=1.0, burst=2.0, most=8)
+    assert [paces.of("a").take() for _ in range(4)] == [True, True, False, False]
+    assert paces.of("b").take()
+    for number in range(100):
+        assert paces.of(f"c{number}").take()
+    assert len(paces) == 8
 
 
 def test_only_loopback_is_listened_on(rig: Rig) -> None:

@@ -131,14 +131,32 @@ def waits_for(condition: Callable[[], bool]) -> bool:
     return condition()
 
 
-def test_datagrams_reach_the_frame(rig: Rig) -> None:
+def place(rig: Rig) -> tuple[str, int]:
     line = next(line for line in rig.remote.announcement if "OSC" in line)
-    port = int(line.split("127.0.0.1:")[1].split(",")[0])
+    return "127.0.0.1", int(line.split("127.0.0.1:")[1].split(",")[0])
+
+
+def test_datagrams_reach_the_frame(rig: Rig) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
-        sender.sendto(b"\xff" * 100, ("127.0.0.1", port))
+        sender.sendto(b"\xff" * 100, place(rig))
         address = f"/{rig.remote.token}/volumes/cellar/weight"
-        sender.sendto(message(address, 0.5), ("127.0.0.1", port))
+        sender.sendto(message(address, 0.5), place(rig))
     assert waits_for(lambda: rig.frame()[0].blend_weight == 0.5)
+
+
+def test_datagrams_without_the_token_cost_its_owner_none(rig: Rig) -> None:
+    stranger = message("/guess/volumes/cellar/weight", 0.25)
+    own = f"/{rig.remote.token}/volumes/cellar/weight"
+    arrived = []
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+        for number in range(20):  # a hundred of a stranger's for each of the owner's
+            for _ in range(100):
+                sender.sendto(stranger, place(rig))
+            sender.sendto(message(own, number / 32), place(rig))
+            time.sleep(0.02)
+            arrived.append(rig.frame()[0].blend_weight)
+    assert waits_for(lambda: rig.frame()[0].blend_weight == 19 / 32)
+    assert len(set(arrived)) > 5
 
 
 def test_the_missing_extra_is_told_in_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
