@@ -9,6 +9,7 @@ import socket
 import threading
 from collections import Counter
 from collections.abc import Coroutine, Iterator
+from functools import partial
 from typing import Any
 
 from elemental.core.errors import InputError
@@ -185,7 +186,7 @@ class Remote:
             task = self._start(self._converse(client, guest))
             self._guests[task] = guest
             task.add_done_callback(self._gone)
-            task.add_done_callback(lambda _, client=client: client.close())
+            task.add_done_callback(partial(_close, client))
 
     def _stranger(self) -> asyncio.Task[None] | None:
         """Who makes room: the oldest without the token, of the host that has most of them."""
@@ -221,6 +222,11 @@ class Remote:
             for datagram, host in _arrived(listener, *first):
                 if token in datagram and known.of(host).take():
                     osc.receive(datagram, self.mailbox, self.token)
+
+
+def _close(client: socket.socket, _: asyncio.Task[None]) -> None:
+    """The end of a conversation; one that was cut before its first step, too."""
+    client.close()
 
 
 def _arrived(listener: socket.socket, datagram: bytes, address: Any) -> Iterator[tuple[bytes, str]]:
