@@ -30,7 +30,7 @@ mi.set_variant("scalar_rgb")
 
 from reference.cache import cached, fingerprint  # noqa: E402  (mitsuba first needs its variant)
 from reference.metrics import compare, hdr_flip, noise, table, to_json  # noqa: E402
-from reference.mitsuba_scene import Job, emission_mask, path_trace  # noqa: E402
+from reference.mitsuba_scene import Job, emission_mask, glass_mask, path_trace  # noqa: E402
 from reference.sheet import sheet  # noqa: E402
 
 OUT = Path(__file__).resolve().parent.parent / "out" / "ground_truth"
@@ -81,8 +81,11 @@ def shoot(words: argparse.Namespace, stage: Stage) -> FloatArray:
         return read_environment(output)
 
 
-def reference(stage: Stage, job: Job) -> tuple[tuple[FloatArray, FloatArray], FloatArray]:
-    """Two independent path-traced halves (H, W, 3), and the mask (H, W) of `emission_mask`."""
+def reference(
+    stage: Stage, job: Job
+) -> tuple[tuple[FloatArray, FloatArray], FloatArray, FloatArray]:
+    """Two independent path-traced halves (H, W, 3), and the masks (H, W) of `emission_mask` and of
+    `glass_mask`."""
     scene, camera = stage.scene, stage.camera
     content = (scene.meshes, scene.instances, scene.materials, scene.textures, scene.lights)
     content_key = fingerprint(*content, scene.environment, camera)
@@ -100,8 +103,11 @@ def reference(stage: Stage, job: Job) -> tuple[tuple[FloatArray, FloatArray], Fl
             for seed in (0, 1)
         )
         mask = picture("mask", lambda half: emission_mask(scene, camera, half, folder), 0)
+        glass = mask * 0
+        if any(material.transmits for material in scene.materials):
+            glass = picture("glass", lambda half: glass_mask(scene, camera, half, folder), 0)
     print(f"reference in {time.monotonic() - start:.1f} s", file=sys.stderr)
-    return (first, second), mask[..., 0]
+    return (first, second), mask[..., 0], glass[..., 0]
 
 
 def main() -> int:
@@ -124,7 +130,7 @@ def run(words: argparse.Namespace) -> int:
     bounces = int(settings["gi.bounces"]) if settings["gi.enabled"] else 0
     job = Job((width, height), words.spp, bounces, float(settings["sky.intensity"]))
     ours = shoot(words, stage) if words.ours is None else read_environment(words.ours)
-    halves, mask = reference(stage, job)
+    halves, mask, glass = reference(stage, job)
     picture = (halves[0] + halves[1]) * np.float32(0.5)
     figures = {
         "scene": words.scene,
@@ -137,6 +143,7 @@ def run(words: argparse.Namespace) -> int:
         "hdr_flip": hdr_flip(ours, picture),
         "all": compare(ours, picture, mask * 0 + 1),
         "surfaces": compare(ours, picture, mask),
+        "glass": compare(ours, picture, glass),
         "reference_noise": noise(*halves, mask),
     }
     print(table(figures))

@@ -16,6 +16,7 @@ from atrium.glb import GlbWriter
 from atrium.mesh import Mesh
 from made_files import write_all
 from make_material_ball import lathe, material, surface
+from rooms.room import GLASS_EXTENSIONS, Glass, glass_extensions
 from surfaces.pictures import PICTURES
 
 FOLDER = Path(__file__).resolve().parent.parent / "content" / "scenes" / "surfaces"
@@ -88,6 +89,23 @@ def pane() -> Mesh:
     return Mesh(position.astype("f4"), normal.astype("f4"), uv.astype("f4"), index.astype("u4"))
 
 
+def pane_rim() -> Mesh:
+    """The four narrow sides of the pane: light that comes out of them went a long way in glass."""
+    x, y, z = np.array(PANE_M) / 2
+    outline = np.array([[-x, -y], [x, -y], [x, y], [-x, y]])
+    position, normal, index = [], [], []
+    for k in range(4):
+        a, b = outline[k], outline[(k + 1) % 4]
+        along = (b - a) / np.linalg.norm(b - a)
+        position += [[*a, z], [*a, -z], [*b, -z], [*b, z]]
+        normal += [[along[1], -along[0], 0.0]] * 4
+        index += [4 * k + corner for corner in (0, 1, 2, 0, 2, 3)]
+    return Mesh(
+        np.array(position, "f4"), np.array(normal, "f4"),
+        np.zeros((16, 2), "f4"), np.array(index, "u4"),
+    )  # fmt: skip
+
+
 def glass(
     name: str,
     roughness: float = 0.0,
@@ -98,21 +116,7 @@ def glass(
 ) -> dict[str, Any]:
     """Wholly transmissive; thickness in m, attenuation as (colour, distance in m)."""
     made = material(name, color, roughness, double_sided)
-    extensions: dict[str, Any] = {
-        "KHR_materials_transmission": {"transmissionFactor": 1.0},
-        "KHR_materials_ior": {"ior": 1.5},
-    }
-    if thickness:
-        volume: dict[str, Any] = {"thicknessFactor": thickness}
-        if attenuation is not None:
-            volume |= {"attenuationColor": attenuation[0], "attenuationDistance": attenuation[1]}
-        extensions["KHR_materials_volume"] = volume
-    return {**made, "extensions": extensions}
-
-
-GLASS_EXTENSIONS = [
-    "KHR_materials_transmission", "KHR_materials_ior", "KHR_materials_volume",
-]  # fmt: skip
+    return {**made, "extensions": glass_extensions(Glass(thickness, attenuation))}
 
 
 def glb(name: str, parts: list[tuple[str, Mesh, tuple[float, float, float], dict[str, Any]]],
@@ -148,6 +152,7 @@ def files() -> dict[str, bytes]:
         ("bottle", bottle(), (0.8, 0.5, -0.25),
          glass("Amber", 0.03, thickness=0.03, attenuation=amber, double_sided=True)),
         ("pane", pane(), (1.65, 0.5, 0.5), glass("Pane", color=(0.75, 0.95, 0.88))),
+        ("pane rim", pane_rim(), (1.65, 0.5, 0.5), material("Pane rim", (0.16, 0.42, 0.34), 0.15)),
     ]  # fmt: skip
     return {
         "room.glb": glb("room", room, []),

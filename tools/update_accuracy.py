@@ -1,4 +1,4 @@
-"""Measures the six scenes of tests/accuracy and rewrites their table; look at what got worse.
+"""Measures the scenes of tests/accuracy and rewrites their table; look at what got worse.
 
 python tools/update_accuracy.py [NAME…]                  the figures of these cases, or of all
 python tools/update_accuracy.py --references [NAME…]     path-trace their pictures first (mitsuba)
@@ -33,7 +33,7 @@ def path_trace(case: Any) -> dict[str, Any]:
 
     mitsuba.set_variant("scalar_rgb")
     from reference.metrics import noise  # noqa: PLC0415
-    from reference.mitsuba_scene import Job, emission_mask  # noqa: PLC0415
+    from reference.mitsuba_scene import Job, emission_mask, glass_mask  # noqa: PLC0415
     from reference.mitsuba_scene import path_trace as trace  # noqa: PLC0415
 
     stage = case.stage()
@@ -44,7 +44,8 @@ def path_trace(case: Any) -> dict[str, Any]:
         halves = [
             trace(stage.scene, stage.camera, replace(job, seed=seed), folder) for seed in (0, 1)
         ]
-        mask = emission_mask(stage.scene, stage.camera, job, folder)[..., 0]
+        look = glass_mask if case.glass else emission_mask
+        mask = look(stage.scene, stage.camera, job, folder)[..., 0]
     ratchet.write_reference(case.file, 0.5 * (halves[0] + halves[1]), mask)
     own = noise(halves[0], halves[1], mask)
     return {

@@ -57,23 +57,37 @@ float curvature_radius(vec3 normal, vec3 p_ws) {
     return length(way) / max(length(turn), 1e-6);
 }
 
-// What comes through, without the surface's own colour.
-vec3 transmitted_light(Surface s, ShadingPoint p, float radius_m) {
+// What a body does to a ray that meets it.
+struct Transmission {
+    RefractedRay ray;
+    PaneShares shares;
+};
+
+// mirrored: share of one face. Of a pane both faces mirror what the eye sees in the first one; what
+// the far side of a ball mirrors goes elsewhere, and what it loses there arrives from elsewhere, too.
+Transmission transmission_of(Surface s, ShadingPoint p, float radius_m) {
     float thickness_m = gl_FrontFacing ? s.thickness * v_scale : 0.0;
     float roundness = roundness_of(thickness_m, radius_m);
     RefractedRay ray = refract_through(p.p_ws, -p.to_eye, p.n_ws, s.ior, thickness_m, roundness);
+    vec3 kept = exp(-s.absorption * ray.path_m);
+    PaneShares pane = pane_shares(p.mirrored, s.transmission * kept);
+    PaneShares body = PaneShares(p.mirrored, s.transmission * kept * max(1.0 - p.mirrored, 0.0));
+    bool inner = !gl_FrontFacing;  // its mirror image is the front's
+    return Transmission(ray, PaneShares(mix(pane.mirrored, body.mirrored, inner ? 1.0 : roundness),
+                                        mix(pane.passes, body.passes, inner ? 1.0 : roundness)));
+}
+
+// What comes along a ray, without the surface's own colour.
+vec3 transmitted_light(Surface s, ShadingPoint p, RefractedRay ray) {
     float half_angle = refracted_half_angle(specular_cone_half_angle(p.specular_power), s.ior);
     vec4 seen = radiance_behind(ray.origin, ray.direction, half_angle);
-    vec3 radiance = seen.rgb;
-    if (seen.a < 1.0) {
+    if (seen.a >= 1.0) return seen.rgb;
 #if GI
-        vec3 beside = gathered_radiance(ray.origin, ray.direction, half_angle);
+    vec3 beside = gathered_radiance(ray.origin, ray.direction, half_angle);
 #else
-        vec3 beside = sky_radiance(ray.direction, half_angle);
+    vec3 beside = sky_radiance(ray.direction, half_angle);
 #endif
-        radiance = mix(beside, radiance, seen.a);
-    }
-    return radiance * exp(-s.absorption * ray.path_m);
+    return mix(beside, seen.rgb, seen.a);
 }
 #endif
 
@@ -91,12 +105,15 @@ void main() {
         ShadingPoint point = seen_point(p_ws, n_ws, s.albedo, s.specular_color, s.specular_power,
                                         s.subsurface_color, s.lighting_model);
         DirectLight direct = direct_light(point);
+#if TRANSMISSION
+        Transmission through = transmission_of(s, point, radius_m);
+        vec3 passes = through.shares.passes;
+        if (largest(passes) > VISIBLE_SHARE) radiance += passes * transmitted_light(s, point, through.ray);
+        direct.specular *= through.shares.mirrored / max(point.mirrored, 1e-4);
+        point.mirrored = through.shares.mirrored;
+#endif
         radiance += direct.diffuse + direct.specular;
         radiance += indirect_light(point, s.opacity) * s.ambient_occlusion;
-#if TRANSMISSION
-        vec3 passes = s.transmission * max(1.0 - point.mirrored, 0.0);
-        if (largest(passes) > VISIBLE_SHARE) radiance += passes * transmitted_light(s, point, radius_m);
-#endif
     }
     o_radiance = vec4(min(radiance, HALF_MAX) * s.opacity, s.opacity);
 }

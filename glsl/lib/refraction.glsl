@@ -46,6 +46,22 @@ float roundness_of(float thickness_m, float radius_m) {
     return clamp(0.5 * thickness_m / max(radius_m, 1e-6), 0.0, 1.0);
 }
 
+// What a pane, two parallel faces, mirrors and lets through in all, light that goes to and fro
+// between them included.
+struct PaneShares {
+    vec3 mirrored;
+    vec3 passes;
+};
+
+// reflectance: of one face; kept: share of the light that is left after one way between them.
+PaneShares pane_shares(vec3 reflectance, vec3 kept) {
+    vec3 enters = 1.0 - reflectance;
+    vec3 back = kept * reflectance;
+    vec3 rounds = 1.0 / max(1.0 - back * back, 1e-3);
+    return PaneShares(reflectance + enters * enters * kept * back * rounds,
+                      enters * enters * kept * rounds);
+}
+
 // Half angle of the cone into which a rough surface scatters what passes, by the mirrored lobe's: a
 // facet that turns by h turns a mirrored ray by 2 h, one that enters and leaves by (ior - 1) h at each
 // of the two surfaces, independently. [inferred]

@@ -1,8 +1,9 @@
-"""Six scenes beside their path-traced pictures, at a size that a test can afford.
+"""Seven scenes beside their path-traced pictures, at a size that a test can afford.
 
 `NAME.exr` is the reference: linear radiance as half floats; its alpha is 1 where the eye meets
-neither an emitter nor the sky. `reached.json` holds how near ours came; it may only come nearer.
-`tools/update_accuracy.py` makes both. Nothing here needs the path tracer.
+neither an emitter nor the sky, in `glass.exr` where it meets glass. `reached.json` holds how near
+ours came; it may only come nearer. `tools/update_accuracy.py` makes both. Nothing here needs the
+path tracer.
 """
 
 from __future__ import annotations
@@ -43,13 +44,17 @@ SETTINGS = (
 
 @dataclass(frozen=True)
 class Case:
-    """A scene, how it is seen and what is set beyond SETTINGS; `reference` names the picture."""
+    """A scene, how it is seen and what is set beyond SETTINGS; `reference` names the picture.
+
+    `glass`: only where the eye meets glass is looked at, else all surfaces are.
+    """
 
     scene: str
     reference: str
     camera: str | None = None
     size: tuple[int, int] = (96, 54)
     settings: tuple[str, ...] = field(default=())
+    glass: bool = False
 
     @property
     def file(self) -> Path:
@@ -72,6 +77,7 @@ CASES = {
     "glossy_floor": Case("glossy_floor", "glossy_floor"),
     "under_sky": Case("under_sky", "under_sky"),
     "atrium": Case("atrium", "atrium", camera="courtyard"),
+    "glass": Case("glass", "glass", glass=True),
 }
 
 SLACK = {"energy": 0.005, "p50": 0.005, "p90": 0.015, "flip": 0.004}
@@ -107,7 +113,7 @@ def figures(ours: Array, reference: Array, mask: Array) -> dict[str, float]:
     """How far ours is off, each 0 where it is the reference.
 
     energy: ratio of the sums of luminance, less 1; p50, p90: percentiles of the relative error; all
-    three over surfaces. flip: mean HDR-FLIP of the whole picture.
+    three over the mask. flip: mean HDR-FLIP of the whole picture.
     """
     found = compare(ours, reference, mask)
     return {

@@ -1,6 +1,7 @@
-"""Six scenes are as near to the path tracer's picture as they once were, or nearer."""
+"""Seven scenes are as near to the path tracer's picture as they once were, or nearer."""
 
 # GI-07, GI-12, GI-13, GI-15: light that bounces six times, of lamps, suns and skies
+# SH-06: what glass shows, bends and mirrors
 
 from __future__ import annotations
 

@@ -53,6 +53,22 @@ def test_a_ball_turns_light_twice_by_the_same_angle(device: Device, ior: float) 
     np.testing.assert_allclose(path, 0.6 * np.cos(inside), rtol=1e-4)
 
 
+def test_both_faces_of_a_pane_mirror(device: Device) -> None:
+    """The sum over all ways to and fro: R + (1 - R)² k² R (1 + k² R² + …), of clear glass
+    2 R / (1 + R), and of what passes (1 - R)² k (1 + k² R² + …)."""
+    faces = np.array([0.0, 0.04, 0.2, 0.6, 0.95])
+    kept = np.array([1.0, 0.8, 0.3])
+    r, k = (grid.ravel() for grid in np.meshgrid(faces, kept))
+    given = {"r": np.repeat(r[:, None], 3, axis=1), "k": np.repeat(k[:, None], 3, axis=1)}
+    rounds = sum((k * r) ** (2 * n) for n in range(200))
+    for member, want in (
+        ("mirrored", r + (1 - r) ** 2 * k**2 * r * rounds),
+        ("passes", (1 - r) ** 2 * k * rounds),
+    ):
+        got = run_glsl(device, INCLUDES, f"pane_shares(r, k).{member}", given, "vec3")
+        np.testing.assert_allclose(got, np.repeat(want[:, None], 3, axis=1), rtol=2e-4, atol=1e-6)
+
+
 def test_a_thin_wall_leaves_light_as_it_is(device: Device) -> None:
     np.testing.assert_allclose(refracted(device, "direction", 1.5, 0.0, 1.0),
                                rays(len(ANGLES))["d"], atol=1e-6)  # fmt: skip

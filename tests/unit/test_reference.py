@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import mitsuba as mi
@@ -26,8 +27,9 @@ from elemental.scene.model import (  # noqa: E402
 )
 from reference.cache import cached, fingerprint  # noqa: E402
 from reference.metrics import compare, hdr_flip, noise, relative_error  # noqa: E402
-from reference.mitsuba_scene import Job, emission_mask, path_trace  # noqa: E402
+from reference.mitsuba_scene import Job, emission_mask, glass_mask, path_trace  # noqa: E402
 from reference.sheet import sheet  # noqa: E402
+from shapes import box  # noqa: E402
 
 JOB = Job((8, 8), 64, 0)
 
@@ -56,6 +58,16 @@ def square(half: float = 1.0) -> Mesh:
         np.array([0, 1, 2, 0, 2, 3], np.uint32),
         0,
     )
+
+
+def slab(side: float, thickness: float) -> Mesh:
+    """A closed box around the origin, thin along z."""
+    positions, indices = box((side, side, thickness))
+    normals = np.repeat(positions.reshape(6, 4, 3).mean(axis=1), 4, axis=0)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    plain = [np.zeros((24, n), np.float32) for n in (4, 2, 2)]
+    white = np.full((24, 4), 255, np.uint8)
+    return Mesh("slab", positions, normals, *plain, white, indices, 0)
 
 
 def scene(material: Material, *lights: Light, texture: Texture | None = None) -> Scene:
@@ -169,6 +181,30 @@ def test_depth_counts_gathers(tmp_path: Path) -> None:
     assert seen[1] == pytest.approx(0.8, abs=0.08)
     assert seen[2] == pytest.approx(seen[1], rel=0.02)  # one square: nothing bounces twice
     assert emission_mask(lit, FRONT, JOB, tmp_path).min() == 1.0
+
+
+@pytest.mark.parametrize("thickness", [0.0, 0.2])
+def test_light_passes_a_pane_and_its_body_absorbs(tmp_path: Path, thickness: float) -> None:
+    """A glowing wall through a wall of glass: (1 - R)² k / (1 - R² k²), R of a face, k absorbed.
+    SH-06"""
+    wall = matte(0.0)
+    wall.emissive = np.full(3, 2.0, np.float32)
+    pane = Material("pane", metallic=0.0, roughness=0.0, transmission=1.0)
+    pane.alpha_mode, pane.thickness = "blend", thickness
+    pane.attenuation_color = np.full(3, 0.5, np.float32)
+    pane.attenuation_distance = 0.1
+    shown = scene(wall)
+    shown.materials.append(pane)
+    shown.meshes.append(replace(slab(0.6, thickness) if thickness else square(0.3), material=1))
+    shown.instances.append(
+        Instance("pane", 1, transforms.compose([0, 0, 1], [0, 0, 0, 1], [1, 1, 1]))
+    )
+    face, kept = 0.04, 0.25 if thickness else 1.0
+    image = path_trace(shown, FRONT, Job((8, 8), 512, 0), tmp_path)
+    want = 2.0 * (1 - face) ** 2 * kept / (1 - (face * kept) ** 2)
+    assert image[4, 4] == pytest.approx(want, rel=0.03)
+    mask = glass_mask(shown, FRONT, JOB, tmp_path)[..., 0]
+    assert (mask[3:5, 3:5].min(), mask[0].max()) == (1.0, 0.0)
 
 
 def test_figures_of_known_pictures() -> None:

@@ -11,8 +11,9 @@ handles without bias:
   - `roughconductor`, GGX, eta 1.5, k 0: the Fresnel reflectance of glass (0.04 at 0 degrees)
   - `roughconductor`, GGX, no Fresnel term, 2·base: metals without their edge brightening
 
-Glass is a `thindielectric`, of a body a `dielectric` or `roughdielectric`; bodies absorb nothing
-and transmit wholly, tinted by the base colour's factor.
+Glass is a `thindielectric`, of a body a `dielectric` or `roughdielectric`, which transmit wholly,
+tinted by the base colour's factor once: by its root at each of a body's two surfaces. What a body
+absorbs is a medium inside (`interior`), so its mesh has to be closed.
 
 alpha = roughness^2. Above them `normalmap`, `mask` (alpha modes) and `twosided`. Differences left:
 vertex colours multiply constants only; one uv set a material; our occlusion textures, which darken
@@ -175,14 +176,31 @@ class MaterialConverter:
 
 
 def _glass(m: Material) -> Entry:
+    tint = m.base_color[:3] if m.thickness == 0.0 else np.sqrt(m.base_color[:3])
     entry: Entry = {
         "type": "dielectric" if m.thickness > 0.0 else "thindielectric",
         "int_ior": m.ior,
-        "specular_transmittance": {"type": "rgb", "value": m.base_color[:3].tolist()},
+        "specular_transmittance": {"type": "rgb", "value": tint.tolist()},
     }
     if m.roughness > 0.0 and m.thickness > 0.0:
         entry |= {"type": "roughdielectric", "distribution": "ggx", "alpha": m.roughness**2}
     return entry
+
+
+def interior(m: Material) -> Entry | None:
+    """The medium inside a body of glass that absorbs [KHR_materials_volume]; None of others."""
+    if not m.transmits or m.thickness == 0.0 or m.attenuation_distance == 0.0:
+        return None
+    absorbs = -np.log(np.maximum(m.attenuation_color, 1e-4)) / m.attenuation_distance
+    density = float(absorbs.max())
+    if density == 0.0:
+        return None
+    return {
+        "type": "homogeneous",
+        "albedo": 0.0,
+        "sigma_t": {"type": "rgb", "value": (absorbs / density).tolist()},
+        "scale": density,
+    }
 
 
 def _slots(m: Material) -> list[TextureSlot]:

@@ -70,7 +70,7 @@ def table(figures: dict[str, Any]) -> str:
     """The figures as lines for a terminal."""
     floor = "  ".join(f"{p} {v:.1%}" for p, v in figures["reference_noise"].items())
     lines = [f"HDR-FLIP {figures['hdr_flip']:.4f}", f"reference's own noise   {floor}"]
-    for name in ("all", "surfaces"):
+    for name in ("all", "surfaces", "glass"):
         f = figures[name]
         if not f["pixels"]:
             continue

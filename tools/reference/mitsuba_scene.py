@@ -6,7 +6,8 @@ direct analytic light. Mitsuba's `max_depth` counts path segments that end on a 
 emitters alone, 2 adds one reflection. An emitter or the sky is itself the end of a gather, so it
 is seen over n reflections: max_depth = n + 1. A sun, point or spot light is reached from a gathered
 surface by one more segment: max_depth = n + 2. Light adds up, so the reference is the sum of two
-renderings, one with each kind of light at its own depth.
+renderings, one with each kind of light at its own depth. Our rays pass glass without a gather:
+where there is any, GLASS_SEGMENTS are added.
 """
 
 from __future__ import annotations
@@ -21,12 +22,15 @@ import numpy as np
 
 from elemental.core import transforms
 from elemental.scene.model import Camera, FloatArray, Light, Scene
-from reference.bsdf import Entry, MaterialConverter
+from reference.bsdf import Entry, MaterialConverter, interior
 from reference.emission import emitting_parts
 from reference.ply import WorldMesh, two_sheets, world_meshes, write_ply
 
 MASK_SAMPLES = 16
 """Samples that look for a light source in a pixel."""
+
+GLASS_SEGMENTS = 4
+"""Path segments in glass and between bodies of it: as many as our pictures of what is behind."""
 
 
 @dataclass(frozen=True)
@@ -46,10 +50,11 @@ def path_trace(scene: Scene, camera: Camera, job: Job, folder: Path) -> FloatArr
     sky = _environment(scene, job.sky_intensity)
     punctual = {f"light{k}": _punctual(light) for k, light in enumerate(scene.lights)}
     parts = [np.zeros((job.size[1], job.size[0], 3), np.float32)]
+    depth = job.bounces + GLASS_SEGMENTS * any(m.transmits for m in scene.materials)
     if area_lights or sky:
-        parts.append(_render({**surfaces, **area_lights, **sky}, camera, job, job.bounces + 1))
+        parts.append(_render({**surfaces, **area_lights, **sky}, camera, job, depth + 1))
     if punctual:
-        parts.append(_render({**surfaces, **punctual}, camera, job, job.bounces + 2))
+        parts.append(_render({**surfaces, **punctual}, camera, job, depth + 2))
     return np.asarray(np.sum(parts, axis=0), dtype=np.float32)
 
 
@@ -63,8 +68,25 @@ def emission_mask(scene: Scene, camera: Camera, job: Job, folder: Path) -> Float
     return np.repeat(dark, 3, axis=2).astype(np.float32)
 
 
+def glass_mask(scene: Scene, camera: Camera, job: Job, folder: Path) -> FloatArray:
+    """Where the eye meets glass first: (H, W, 3) float32, 1 or 0; none at its rims."""
+    surfaces, _ = _surfaces(scene, folder)
+    glass = {f"surface{k}_0" for k, m in enumerate(scene.materials) if m.transmits}
+    black = {"type": "diffuse", "reflectance": {"type": "rgb", "value": 0.0}}
+    shown: dict[str, Entry] = {}
+    for name, entry in surfaces.items():
+        plain = {key: entry[key] for key in ("type", "filename")}
+        light = {"type": "area", "radiance": {"type": "rgb", "value": 1.0}}
+        bsdf = {"type": "twosided", "bsdf": black}
+        shown[name] = {**plain, "bsdf": bsdf} | ({"emitter": light} if name in glass else {})
+    quick = Job(job.size, MASK_SAMPLES, 0)
+    return (_render(shown, camera, quick, max_depth=1) > 0.999).astype(np.float32)
+
+
 def _render(entries: Entry, camera: Camera, job: Job, max_depth: int) -> FloatArray:
-    integrator = {"type": "path", "max_depth": max_depth, "rr_depth": 1000}
+    media = any("interior" in entry for entry in entries.values())
+    kind = "volpath" if media else "path"
+    integrator = {"type": kind, "max_depth": max_depth, "rr_depth": 1000}
     whole = {
         "type": "scene",
         **entries,
@@ -108,7 +130,7 @@ def _surfaces(scene: Scene, folder: Path) -> tuple[dict[str, Entry], dict[str, E
     for index, mesh in world_meshes(scene, uv_sets).items():
         material = scene.materials[index]
         color = mesh.colors.astype(np.float32).mean(axis=0) / np.float32(255.0)
-        bsdf = converter.bsdf(material, color)
+        bsdf, inside = converter.bsdf(material, color), interior(material)
         parts: list[tuple[WorldMesh, Entry | None]] = [(mesh, None)]
         if material.emits or material.unlit:
             # mitsuba's area lights shine to the front: a back that shines too is a mesh of its own.
@@ -120,6 +142,8 @@ def _surfaces(scene: Scene, folder: Path) -> tuple[dict[str, Entry], dict[str, E
             path = folder / f"{name}.ply"
             write_ply(path, part)
             shapes[name] = {"type": "ply", "filename": str(path), "bsdf": bsdf}
+            if inside is not None:
+                shapes[name]["interior"] = inside
             if radiance is not None:
                 light = {"type": "area", "radiance": radiance}
                 emitting[name] = {**shapes[name], "emitter": light}

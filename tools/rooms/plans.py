@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from atrium.mesh import Soup
-from rooms.room import Paint, Point, Room, ball, face, span, torus
+from rooms.room import Glass, Paint, Point, Room, ball, face, span, torus
 
 WHITE = Paint((0.75, 0.75, 0.75))
 RED = Paint((0.63, 0.065, 0.05))
@@ -183,10 +183,50 @@ def under_sky() -> Room:
     return room
 
 
+def glass() -> Room:
+    """Balls, a block and a thin pane of glass over a chequered floor, before coloured walls."""
+    smoke = ((0.9, 0.45, 0.12), 0.35)
+    room = Room(
+        {
+            "light": Paint((0.7, 0.68, 0.64)),
+            "dark": Paint((0.08, 0.09, 0.11)),
+            "ochre": Paint((0.7, 0.42, 0.15)),
+            "blue": Paint((0.12, 0.24, 0.5)),
+            "brick": Paint((0.5, 0.16, 0.1)),
+            "clear": Paint((1.0, 1.0, 1.0), 0.0, glass=Glass(0.9)),
+            "amber": Paint((1.0, 1.0, 1.0), 0.0, glass=Glass(0.6, smoke)),
+            "frosted": Paint((1.0, 1.0, 1.0), 0.3, glass=Glass(0.6)),
+            "block": Paint((1.0, 1.0, 1.0), 0.0, glass=Glass(0.06)),
+            "pane": Paint((0.8, 0.95, 0.9), 0.0, glass=Glass()),
+        }
+    )
+    tiles: dict[str, list[Soup]] = {"light": [], "dark": []}
+    for i in range(10):
+        for j in range(10):
+            x, z = -2.5 + 0.5 * i, -2.5 + 0.5 * j
+            corners = ((x, 0, z + 0.5), (x + 0.5, 0, z + 0.5), (x + 0.5, 0, z), (x, 0, z))
+            tiles["dark" if (i + j) % 2 else "light"].append(face(*corners))
+    for paint, soups in tiles.items():
+        room.add(f"{paint} tiles", paint, *soups)
+    room.add("ground", "dark", span((-2.5, -0.2, -2.5), (2.5, -0.02, 2.5)))
+    room.add("back", "ochre", span((-2.5, 0, -2.7), (0.6, 1.7, -2.5)))
+    room.add("back right", "blue", span((0.6, 0, -2.7), (2.5, 1.7, -2.5)))
+    room.add("side", "brick", span((-2.7, 0, -2.7), (-2.5, 1.7, 0.5)))
+    room.add("clear ball", "clear", ball(0.45, (-0.75, 0.45, 0.1), rings=32))
+    room.add("amber ball", "amber", ball(0.3, (0.2, 0.3, 0.75), rings=24))
+    room.add("frosted ball", "frosted", ball(0.3, (0.45, 0.3, -0.75), rings=24))
+    room.add("glass block", "block", span((-0.4, 0, -1.4), (0.1, 1.0, -1.34)))
+    room.add(
+        "pane", "pane", face((0.95, 0, 0.5), (1.75, 0, 0.0), (1.75, 1.3, 0.0), (0.95, 1.3, 0.5))
+    )
+    return room
+
+
 PLANS: dict[str, Callable[[], Room]] = {
     "cornell_box": cornell_box,
     "corridor": corridor,
     "grate": grate,
     "glossy_floor": glossy_floor,
     "under_sky": under_sky,
+    "glass": glass,
 }

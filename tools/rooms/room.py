@@ -16,16 +16,29 @@ Point = tuple[float, float, float]
 
 CREASE_DEG = 40.0
 SPHERE_RINGS = 16
+GLASS_EXTENSIONS = [
+    "KHR_materials_transmission", "KHR_materials_ior", "KHR_materials_volume",
+]  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Glass:
+    """Of what a material lets through wholly: index 1.5, thickness in m (0: a thin wall), and the
+    colour that is left after a distance in m."""
+
+    thickness: float = 0.0
+    attenuation: tuple[Point, float] | None = None
 
 
 @dataclass(frozen=True)
 class Paint:
-    """A material: linear base colour, and radiance in nit where it glows."""
+    """A material: linear base colour, radiance in nit where it glows, and what makes it glass."""
 
     color: Point
     roughness: float = 1.0
     metallic: float = 0.0
     glow: Point = (0.0, 0.0, 0.0)
+    glass: Glass | None = None
 
 
 @dataclass
@@ -51,7 +64,10 @@ class Room:
                 "meshes", {"name": part, "primitives": [{**primitive, "material": number[paint]}]}
             )
             glb.node(part, mesh, (0.0, 0.0, 0.0), yaw=0.0, scale=1.0)
-        return glb.bytes(["KHR_materials_emissive_strength"], name, "tools/make_rooms.py")
+        extensions = ["KHR_materials_emissive_strength"]
+        if any(paint.glass for paint in self.paints.values()):
+            extensions += GLASS_EXTENSIONS
+        return glb.bytes(extensions, name, "tools/make_rooms.py")
 
 
 def _material(name: str, paint: Paint) -> dict[str, Any]:
@@ -67,7 +83,24 @@ def _material(name: str, paint: Paint) -> dict[str, Any]:
     if strength > 0.0:
         entry["emissiveFactor"] = [c / strength for c in paint.glow]
         entry["extensions"] = {"KHR_materials_emissive_strength": {"emissiveStrength": strength}}
+    if paint.glass is not None:
+        entry["extensions"] = glass_extensions(paint.glass)
     return entry
+
+
+def glass_extensions(glass: Glass) -> dict[str, Any]:
+    """The extensions of a glTF material that is wholly transmissive."""
+    extensions: dict[str, Any] = {
+        "KHR_materials_transmission": {"transmissionFactor": 1.0},
+        "KHR_materials_ior": {"ior": 1.5},
+    }
+    if glass.thickness > 0.0:
+        volume: dict[str, Any] = {"thicknessFactor": glass.thickness}
+        if glass.attenuation is not None:
+            color, distance = glass.attenuation
+            volume |= {"attenuationColor": color, "attenuationDistance": distance}
+        extensions["KHR_materials_volume"] = volume
+    return extensions
 
 
 def span(low: Sequence[float], high: Sequence[float]) -> Soup:
@@ -82,12 +115,12 @@ def face(a: Point, b: Point, c: Point, d: Point) -> Soup:
     return triangles(corners[[[0, 1, 2], [0, 2, 3]]])
 
 
-def ball(radius: float, centre: Point) -> Soup:
+def ball(radius: float, centre: Point, rings: int = SPHERE_RINGS) -> Soup:
     """A sphere."""
-    turn = np.linspace(-np.pi / 2.0, np.pi / 2.0, SPHERE_RINGS + 1)
+    turn = np.linspace(-np.pi / 2.0, np.pi / 2.0, rings + 1)
     profile = [(radius * float(max(np.cos(t), 0.0)), radius * float(np.sin(t))) for t in turn]
     profile[0], profile[-1] = (0.0, -radius), (0.0, radius)
-    return revolve(profile, 2 * SPHERE_RINGS).moved(*centre)
+    return revolve(profile, 2 * rings).moved(*centre)
 
 
 def torus(major: float, minor: float, centre: Point) -> Soup:
