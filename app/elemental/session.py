@@ -16,8 +16,9 @@ from pathlib import Path
 import numpy as np
 
 from elemental.core import transforms
-from elemental.core.errors import InputError
+from elemental.core.errors import InputError, named_by
 from elemental.core.images import read_environment
+from elemental.core.paths import named_file
 from elemental.gpu.device import Device
 from elemental.scene.camera_path import camera_at
 from elemental.scene.defaults import (
@@ -32,6 +33,7 @@ from elemental.scene.defaults import (
 from elemental.scene.evaluate import placed_camera
 from elemental.scene.load import load_scene
 from elemental.scene.model import Camera, CameraPath, Environment, Scene, framing_camera
+from elemental.scene.named_files import check_named, seen_from_here
 from elemental.settings import Settings
 
 DEFAULT_SCENE = "atrium"
@@ -74,17 +76,24 @@ def open_scene(name: str | None, assignments: Iterable[str]) -> tuple[Scene, Set
     """The scene and its settings: defaults, under the scene file's, under ``key=value`` texts."""
     texts = tuple(assignments)
     asked = Settings.parse(texts)  # refuse bad words before a large file is read
-    is_asked = any(text.partition("=")[0].strip() == ANIMATION for text in texts)
+    asked_keys = {text.partition("=")[0].strip() for text in texts}
     scene = load_scene(
         DEFAULT_SCENE if name is None else name,
         default_lights=False,
-        animation=asked[ANIMATION] if is_asked else None,
+        animation=asked[ANIMATION] if ANIMATION in asked_keys else None,
     )
-    settings = Settings.parse(texts, own_settings(scene))
+    named = {key: seen_from_here(key, asked[key]) for key in asked_keys}
+    settings = own_settings(scene).replace(named, "--set")
+    for key, value in named.items():
+        check_named(key, value, scene.folder, "--set", key, str(asked[key]))
     if scene.exposure_ev is None and settings["exposure"] == fixed_exposure_ev(scene) != 0.0:
         note_exposure(scene, settings["exposure"])
     if settings["sky.image"]:
-        radiance = read_environment(Path(settings["sky.image"]))
+        file, field, name = "--set", "sky.image", asked["sky.image"]
+        if field not in asked_keys:
+            file, field, name = str(scene.path), "settings.sky.image", settings["sky.image"]
+        with named_by(file, field, name):
+            radiance = read_environment(named_file(settings["sky.image"], scene.folder))
         scene.environment = Environment(radiance, np.ones(3, np.float32), 1.0)
     if settings["scene.default_lights"] and is_unlit(scene):
         add_default_lights(scene)

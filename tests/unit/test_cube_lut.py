@@ -58,7 +58,7 @@ def test_bad_files_are_told_by_line(text: str, where: str, reason: str) -> None:
 
 def test_a_binary_file_is_refused(tmp_path: Path) -> None:
     (tmp_path / "a.cube").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(InputError, match=r"not a \.cube text file"):
+    with pytest.raises(InputError, match=r"a\.cube: is not UTF-8 text"):
         read_cube_lut(tmp_path / "a.cube")
 
 

@@ -9,8 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from elemental.core.errors import InputError
-from elemental.core.files import read_file
+from elemental.core.files import read_text
 
+CUBE_SUFFIX = ".cube"
 CURVE_SIZES = range(2, 65536 + 1)
 CUBE_SIZES = range(2, 256 + 1)
 """Entries along an axis [Adobe13]."""
@@ -43,11 +44,9 @@ class CubeLut:
 
 def read_cube_lut(path: Path) -> CubeLut:
     """Parse a `.cube` file. Raises InputError(file, line, reason)."""
-    try:
-        text = read_file(path).decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise InputError(path, "", "is not a .cube text file") from None
-    return parse_cube_lut(text, path)
+    if path.suffix.lower() != CUBE_SUFFIX:
+        raise InputError(path, "", f"expected a {CUBE_SUFFIX} file")
+    return parse_cube_lut(read_text(path), path)
 
 
 def parse_cube_lut(text: str, file: str | Path) -> CubeLut:

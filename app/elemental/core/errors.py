@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 
@@ -38,3 +40,16 @@ class CombinedInputError(InputError):
     @property
     def lines(self) -> list[str]:
         return [line for error in self.errors for line in error.lines]
+
+
+@contextmanager
+def named_by(file: str | Path, field: str, name: str) -> Iterator[None]:
+    """Tell what is wrong with the file called ``name`` as wrong of the ``field`` that names it.
+
+    Raises InputError(``file``, ``field``, reason), the reason beginning with ``name``.
+    """
+    try:
+        yield
+    except InputError as error:
+        reason = ": ".join(part for part in (name, error.field, error.reason) if part)
+        raise InputError(file, field, reason) from error

@@ -17,14 +17,34 @@ def read_file(path: Path, file: str | Path | None = None, field: str = "") -> by
     Raises InputError(`file`, `field`, reason) for anything else; `file` is `path` by default.
     """
     blamed = path if file is None else file
+    check_file(path, blamed, field)
     try:
-        if not path.is_file():
-            raise InputError(blamed, field, "is not a file" if path.exists() else "does not exist")
         return path.read_bytes()
     except OSError as error:
         raise InputError(blamed, field, f"can't be read ({error.strerror})") from error
-    except ValueError as error:
-        raise InputError(blamed, field, f"can't be a file name ({error})") from error
+
+
+def check_file(path: Path, file: str | Path | None = None, field: str = "") -> None:
+    """Raises InputError as ``read_file`` does for what is no regular file."""
+    blamed = path if file is None else file
+    try:
+        if path.is_dir():
+            raise InputError(blamed, field, "is a folder")
+        if not path.is_file():
+            raise InputError(blamed, field, "is not a file" if path.exists() else "does not exist")
+    except OSError as error:
+        raise InputError(blamed, field, f"can't be read ({error.strerror})") from error
+    except ValueError:  # a null character
+        raise InputError(blamed, field, "can't be a file name") from None
+
+
+def read_text(path: Path) -> str:
+    """A text file in UTF-8, with or without a byte order mark. Raises InputError."""
+    try:
+        return read_file(path).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        reason = f"is not UTF-8 text (byte {error.start + 1})"
+        raise InputError(path, "", reason) from error
 
 
 @contextmanager

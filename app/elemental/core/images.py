@@ -14,7 +14,7 @@ import numpy.typing as npt
 import PIL.Image
 
 from elemental.core.errors import InputError
-from elemental.core.files import atomic_file, read_file
+from elemental.core.files import atomic_file, check_file, read_file
 from elemental.core.rgbe import decode_rgbe
 
 ERROR_DESCRIPTOR = 2
@@ -35,7 +35,7 @@ def read_png_jpeg_webp(source: bytes | Path, name: str | None = None) -> npt.NDA
         with PIL.Image.open(io.BytesIO(encoded), formats=PNG_JPEG_WEBP) as image:
             return _rgba8(image)
     except Exception as error:  # Pillow's decoders raise what their input makes them raise
-        raise InputError(label, "", f"not a readable PNG, JPEG or WebP image ({error})") from error
+        raise InputError(label, "", _unreadable(error, "PNG, JPEG or WebP")) from error
 
 
 def check_png(path: Path) -> tuple[int, int]:
@@ -48,7 +48,7 @@ def check_png(path: Path) -> tuple[int, int]:
             size = image.size
             image.verify()
     except Exception as error:  # Pillow's decoders raise what their input makes them raise
-        raise InputError(path, "", f"not a whole PNG image ({error})") from error
+        raise InputError(path, "", _unreadable(error, "PNG")) from error
     return size
 
 
@@ -58,6 +58,7 @@ def read_environment(path: Path) -> npt.NDArray[np.float32]:
     Raises InputError for another kind of file, a broken one, or one with NaN or infinite texels.
     """
     suffix = path.suffix.lower()
+    check_file(path)
     if suffix == ".hdr":
         try:
             radiance = decode_rgbe(read_file(path))
@@ -66,7 +67,7 @@ def read_environment(path: Path) -> npt.NDArray[np.float32]:
     elif suffix == ".exr":
         radiance = read_exr(path)
     else:
-        raise InputError(path, "", f"expected an .hdr or .exr file, not {suffix or 'no suffix'!r}")
+        raise InputError(path, "", f"expected an .hdr or .exr file, not {path.name!r}")
     if not np.isfinite(radiance).all():
         raise InputError(path, "", "texels that are NaN or infinite")
     return np.maximum(radiance, 0.0)
@@ -85,7 +86,7 @@ def read_exr(path: Path) -> npt.NDArray[np.float32]:
             channels = OpenEXR.File(io.BytesIO(encoded), separate_channels=True).channels()
         planes = {name: np.asarray(channel.pixels) for name, channel in channels.items()}
     except Exception as error:  # the binding raises what OpenEXR's C++ throws
-        raise InputError(path, "", f"not a readable OpenEXR file ({error})") from error
+        raise InputError(path, "", "not an OpenEXR file, or a broken one") from error
     names = ("R", "G", "B") if {"R", "G", "B"} <= planes.keys() else ("Y", "Y", "Y")
     if names[0] not in planes:
         found = ", ".join(sorted(planes)) or "none"
@@ -110,6 +111,15 @@ def write_exr(path: Path, rgb32f: npt.NDArray[np.float32]) -> None:
     channels = {"RGBA"[: pixels.shape[2]]: pixels}
     with atomic_file(path) as temporary:
         OpenEXR.File(header, channels).write(str(temporary))
+
+
+def _unreadable(error: Exception, kinds: str) -> str:
+    """Why Pillow could not decode an image, without its own words for our buffers."""
+    if isinstance(error, PIL.UnidentifiedImageError):
+        return f"not a {kinds} image"
+    if isinstance(error, PIL.Image.DecompressionBombError):
+        return "an image of too many pixels"
+    return f"a broken {kinds} image"
 
 
 @contextmanager

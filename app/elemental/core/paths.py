@@ -26,10 +26,21 @@ def glsl_root() -> Path:
     return _root("glsl")
 
 
-def texture_file(name: str) -> Path:
-    """The file that a setting names: one of content/textures/, else a path."""
-    shipped = content_root() / "textures" / name
-    return shipped if shipped.is_file() else Path(name)
+def named_file(name: str, folder: Path) -> Path:
+    """The file that a setting of a scene in `folder` names: there, else one of content/textures/.
+
+    One that is in neither is told as of `folder`; an absolute name is itself.
+    """
+    beside, shipped = folder / name, content_root() / "textures" / name
+    return shipped if not is_file(beside) and is_file(shipped) else beside
+
+
+def is_file(path: Path) -> bool:
+    """Whether there is a file; a path that none can have is of none."""
+    try:
+        return path.is_file()
+    except OSError:  # too long, or not to be looked into
+        return False
 
 
 @cache

@@ -82,7 +82,7 @@ class Renderer:
         self.size = size
         self._area_lights = AreaLightBlock(scene, settings["gi.area_lights"])
         self._last_pose = LastPose()
-        self._post = PostHistory(device, settings)
+        self._post = PostHistory(device, settings, scene.folder)
         self._meshes = GpuScene(device, scene, self._area_lights.lights)
         self._decals = Decals(device, scene, self._meshes)
         self._shadows = ShadowMaps(device, _shadow_settings(settings))

@@ -123,7 +123,10 @@ def compile_program(
         stage: flatten(path, shader.defines, device.shader_root, snippets)
         for stage, path in shader.stages
     }
-    mgl = _link(device.ctx, shader, sources)
+    try:
+        mgl = _link(device.ctx, shader, sources)
+    except ShaderError as error:
+        raise _blamed(error, snippets or {}) from None
     device.gl.label(c.LABEL_PROGRAM, mgl.glo, repr(shader))
     declared: dict[str, Declared] = {}
     for source in sources.values():
@@ -155,6 +158,14 @@ def _link(ctx: moderngl.Context, shader: Shader, sources: dict[str, Source]) -> 
         return ctx.compute_shader(sources["compute"].text)
     except moderngl.Error as error:
         raise ShaderError(_located(str(error), sources, shader)) from None
+
+
+def _blamed(error: ShaderError, snippets: Mapping[str, SnippetText]) -> ShaderError:
+    """The error with the files of the snippets in front, unless it names one of them."""
+    labels = [snippet.label for snippet in snippets.values()]
+    if not labels or any(label in str(error) for label in labels):
+        return error
+    return ShaderError(f"{', '.join(labels)}: {error}")
 
 
 _HEADINGS = {"Program", "GLSL Compiler failed", "GLSL Linker failed"}

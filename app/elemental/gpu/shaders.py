@@ -18,7 +18,7 @@ from elemental.gpu.formats import IMAGE_QUALIFIERS
 Define = int | float | bool | str
 _INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
 _SNIPPET = re.compile(r"^\s*#\s*include\s+<(\w+)>")
-_COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.S)
+COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.S)
 
 
 class ShaderError(Exception):
@@ -176,9 +176,11 @@ def flatten(
             return
         files[file] = None
         try:
-            content = file.read_text(encoding="utf-8")
+            content = file.read_text(encoding="utf-8-sig")
         except OSError as error:
-            raise ShaderError(f"{origin}: can't read {file}: {error.strerror}") from error
+            raise ShaderError(f"{origin}: can't read {path}: {error.strerror}") from error
+        except ValueError as error:  # no UTF-8, or a name that no file can have
+            raise ShaderError(f"{origin}: {path} is no text in UTF-8") from error
         for number, line in enumerate(content.splitlines(), 1):
             include = _INCLUDE.match(line)
             if include:
@@ -252,7 +254,7 @@ _BLOCK = re.compile(
 
 def declared_resources(text: str) -> dict[str, Declared]:
     """Samplers, images and blocks that GLSL ``text`` declares, by name, in any ``#if`` branch."""
-    plain = _COMMENT.sub(" ", text)
+    plain = COMMENT.sub(" ", text)
     found: dict[str, Declared] = {}
     for match in _OPAQUE.finditer(plain):
         words = set(re.findall(r"\w+", match["layout"] or ""))

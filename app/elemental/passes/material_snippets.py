@@ -4,11 +4,13 @@ No GL."""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from elemental.core.errors import InputError
+from elemental.core.files import read_text
 from elemental.core.paths import content_root, glsl_root
-from elemental.gpu.shaders import ShaderError, SnippetText
+from elemental.gpu.shaders import COMMENT, ShaderError, SnippetText
 from elemental.scene.definitions import (
     SHARED,
     MaterialDefinition,
@@ -24,6 +26,11 @@ TYPES = {
     "color": "vec3", "rgba": "vec4",
 }  # fmt: skip
 """GLSL types by kind of parameter."""
+FUNCTIONS = {
+    "material": "void material(inout Surface s, MaterialInput m, Parameters p)",
+    "displace": "vec3 displace(MaterialInput m, Parameters p)",
+}
+"""What a material has to have; the second one only where it moves vertices."""
 
 
 class MaterialSnippet:
@@ -46,6 +53,7 @@ class MaterialSnippet:
         if self._loads or self.definition is not self._next:
             self._reread()
         self._loads += 1
+        _check_functions(self._next)
         return SnippetText(prelude(self._next), self.file, label(self.file))
 
     def _reread(self) -> None:
@@ -67,6 +75,15 @@ class MaterialSnippet:
             self.revision += self._loads > 1  # to be compiled for the first time is no edit
         else:
             self._next = self.definition
+
+
+def _check_functions(definition: MaterialDefinition) -> None:
+    """Raises ShaderError for a material without the functions that it is asked for."""
+    code = COMMENT.sub(" ", read_text(definition.file))
+    for name, wanted in FUNCTIONS.items():
+        is_asked = name == "material" or definition.displacement_m > 0.0
+        if is_asked and re.search(rf"\b{name}\s*\(", code) is None:
+            raise ShaderError(f"{label(definition.file)}: has no function `{wanted}`")
 
 
 def label(file: Path) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from elemental.core import transforms
-from elemental.core.errors import InputError
+from elemental.core.errors import named_by
 from elemental.core.images import read_environment
 from elemental.scene.gltf import load_gltf
 from elemental.scene.gltf.animations import EVERY
@@ -30,11 +30,14 @@ from elemental.scene.model import (
     unique_name,
 )
 from elemental.scene.motion import RigBuilder
+from elemental.scene.named_files import check_volume_files
 from elemental.scene.photometry import solid_angle
 from elemental.scene.scene_decals import stick
-from elemental.scene.scene_file import SceneFile, flat_settings, read_scene_file
+from elemental.scene.scene_file import SceneFile, read_scene_file
 from elemental.scene.scene_materials import dress
 from elemental.scene.scene_motions import Movers, described
+from elemental.scene.scene_settings import settings_of
+from elemental.scene.scene_warnings import covered_models, idle_keys
 from elemental.scene.tables.cameras import CameraTable, PathTable
 from elemental.scene.tables.lights import EnvironmentTable, LightTable
 from elemental.scene.tables.models import ModelTable
@@ -57,14 +60,16 @@ def load_scene_file(path: Path, animation: str | None = None) -> Scene:
     """
     file = read_scene_file(path)
     scene = Scene(file.name or path.stem, path)
-    scene.settings = flat_settings(file.settings)
+    scene.settings = settings_of(file.settings, path)
     wanted = animation or str(scene.settings.get("scene.animation", EVERY))
     builder = RigBuilder()
     movers = Movers(builder, () if wanted == "none" else file.motions, path)
     scene.movers = [described(table) for table in file.motions]
     scene.cameras = [_camera(table) for table in file.cameras]
     scene.lights = [_light(table, i, path) for i, table in enumerate(file.lights)]
-    for light in scene.lights:
+    taken = {table.name for table in file.lights if table.name is not None}
+    for light, table in zip(scene.lights, file.lights, strict=True):
+        light.name = table.name or unique_name(light.name, taken)
         node = movers.node_at("light", light.name, light.position)
         light.node = builder.node(node, _light_turn(light)) if node >= 0 else -1
     _place_models(scene, file, wanted, builder, movers)
@@ -80,6 +85,8 @@ def load_scene_file(path: Path, animation: str | None = None) -> Scene:
         Region(_vec(region.min), _vec(region.max), region.level_offset) for region in file.regions
     ]
     scene.volumes = volumes_of(file.volumes, path)
+    check_volume_files(scene.volumes, path)
+    scene.warnings += [*idle_keys(file, path), *covered_models(file, path)]
     return scene
 
 
@@ -90,10 +97,9 @@ def _place_models(
     loaded: dict[Path, tuple[Scene, int]] = {}
     for i, table in enumerate(file.models):
         path = scene.path.parent / table.file
-        if not path.is_file():
-            raise InputError(scene.path, f"models[{i}].file", f"{table.file} does not exist")
         if path not in loaded:
-            loaded[path] = load_gltf(path, animation), len(scene.meshes)
+            with named_by(scene.path, f"models[{i}].file", table.file):
+                loaded[path] = load_gltf(path, animation), len(scene.meshes)
             _adopt(scene, loaded[path][0])
         world_from_model = _placement(table)
         mover = movers.node_at("model", table.name or path.stem, world_from_model[:3, 3])
@@ -243,7 +249,8 @@ def _camera_path(table: PathTable) -> CameraPath:
 def _light(table: LightTable, index: int, path: Path) -> Light:
     profile = None
     if table.ies is not None:
-        profile = read_ies(path.parent / table.ies, path, f"lights[{index}].ies")
+        with named_by(path, f"lights[{index}].ies", table.ies):
+            profile = read_ies(path.parent / table.ies)
     away = [0.0, 0.0, -1.0] if profile is None else [0.0, -1.0, 0.0]
     light = Light(
         name=table.name or f"{table.kind}{index}",
@@ -269,7 +276,10 @@ def _light(table: LightTable, index: int, path: Path) -> Light:
 
 
 def _environment(table: EnvironmentTable, path: Path) -> Environment:
-    radiance = read_environment(path.parent / table.file) if table.file else None
+    radiance = None
+    if table.file:
+        with named_by(path, "environment.file", table.file):
+            radiance = read_environment(path.parent / table.file)
     return Environment(radiance, _vec(table.tint), table.intensity)
 
 

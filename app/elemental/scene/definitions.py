@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from elemental.core.errors import InputError
-from elemental.core.files import read_file
+from elemental.core.errors import InputError, named_by
+from elemental.core.files import read_text
 from elemental.core.paths import content_root
 from elemental.scene.parameters import (
     Parameter,
@@ -157,10 +157,8 @@ def find_definition(name: str, folder: Path, file: Path, field: str) -> Material
     Raises InputError(file, field, reason) where there is none, and for a broken one.
     """
     if name.endswith(SUFFIX):
-        path = folder / name
-        if not path.is_file():
-            raise InputError(file, field, f"{name} does not exist")
-        return read_definition(path.resolve())
+        with named_by(file, field, name):
+            return read_definition((folder / name).resolve())
     names = definition_names()
     if name in names:
         return builtin(name)
@@ -171,7 +169,7 @@ def find_definition(name: str, folder: Path, file: Path, field: str) -> Material
 
 def read_definition(path: Path) -> MaterialDefinition:
     """The definition in a material's file. Raises InputError."""
-    text = read_file(path).decode("utf-8", errors="replace")
+    text = read_text(path)
     heading = _heading(text, path)
     try:
         table = tomllib.loads(heading)

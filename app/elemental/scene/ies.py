@@ -93,10 +93,9 @@ def _between(values: F64, knots: F64) -> tuple[npt.NDArray[np.int64], F64]:
     return below, np.clip(share, 0.0, 1.0)
 
 
-def read_ies(path: Path, file: str | Path | None = None, field: str = "") -> LightProfile:
-    """Read a photometric file. Raises InputError, which names `file` and `field` where the file
-    can't be read, and the .ies file itself where it is broken."""
-    raw = read_file(path, file, field)
+def read_ies(path: Path) -> LightProfile:
+    """Read a photometric file. Raises InputError."""
+    raw = read_file(path)
     if len(raw) > BYTES_MAX:
         raise InputError(path, "", f"is larger than {BYTES_MAX >> 20} MiB")
     return parse_ies(raw.decode("latin-1"), path)
@@ -106,7 +105,7 @@ def parse_ies(text: str, path: Path) -> LightProfile:
     """The luminaire of a file's text. Raises InputError."""
     head = re.search(r"^[ \t]*TILT[ \t]*=[ \t]*([^\r\n]*)", text, re.MULTILINE)
     if head is None:
-        raise InputError(path, "TILT", "is missing: no IES LM-63 file")
+        raise InputError(path, "TILT", "is missing: not an IES LM-63 file")
     numbers = _Numbers(text[head.end() :], path)
     tilt = head[1].strip().upper()
     if tilt == "INCLUDE":

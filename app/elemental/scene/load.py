@@ -10,12 +10,11 @@ from elemental.core.errors import InputError
 from elemental.core.paths import content_root
 from elemental.scene.defaults import add_default_lights, is_unlit
 from elemental.scene.extent import settle
-from elemental.scene.gltf import load_gltf
+from elemental.scene.gltf import GLTF_SUFFIXES, load_gltf
 from elemental.scene.model import Scene
 
 EVERY_ANIMATION, NO_ANIMATION = "all", "none"
 """Words for which animations play, besides their names."""
-GLTF_SUFFIXES = (".gltf", ".glb")
 SCENE_FILE_SUFFIX = ".toml"
 
 LARGEST_COORDINATE = 1e9

@@ -141,6 +141,11 @@ class Scene:
     animations: list[str] = field(default_factory=list)
     movers: list[str] = field(default_factory=list)
     hidden: int = 0
+    folder: Path = field(init=False)
+    """What file names in the settings and in volumes count from, wherever the scene is saved."""
+
+    def __post_init__(self) -> None:
+        self.folder = self.path.parent
 
     @property
     def triangle_count(self) -> int:

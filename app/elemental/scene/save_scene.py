@@ -6,10 +6,9 @@ kill in the middle leaves the old file or the new one, whole.
 
 from __future__ import annotations
 
-import os
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -18,11 +17,13 @@ import tomlkit
 from tomlkit.exceptions import TOMLKitError
 
 from elemental.core.errors import InputError
-from elemental.core.files import atomic_file, read_file
+from elemental.core.files import atomic_file, read_text
 from elemental.scene import toml_edit
+from elemental.scene.gltf import GLTF_SUFFIXES
 from elemental.scene.lights import Light
-from elemental.scene.load import GLTF_SUFFIXES, SCENE_FILE_SUFFIX
+from elemental.scene.load import SCENE_FILE_SUFFIX
 from elemental.scene.materials import Material
+from elemental.scene.save_names import move_files, relative, seen_from
 from elemental.scene.save_parts import put_lights, put_materials
 from elemental.scene.scene_file import flat_settings, parse_scene_file
 from elemental.scene.volume_save import with_volumes
@@ -44,24 +45,27 @@ class Changes:
     materials: tuple[Sequence[Material], Sequence[Material]] | None = None
 
 
-def save_scene(opened: Path, target: Path, changes: Changes) -> None:
+def save_scene(opened: Path, target: Path, changes: Changes, folder: Path | None = None) -> None:
     """Write the scene of ``opened`` to the scene file ``target`` with ``changes``.
 
     ``opened`` is a scene file, which is copied but for the changes, or a glTF file, which the new
-    file names as its model. Raises InputError for a target that is no .toml file or can't be
-    written, and for changes that a scene file can't hold.
+    file names as its model. ``folder``: what file names in ``changes`` count from, by default that
+    of ``opened``; in the new file they name the same files. Raises InputError for a target that is
+    no .toml file or can't be written, and for changes that a scene file can't hold.
     """
     if target.suffix.lower() != SCENE_FILE_SUFFIX:
         raise InputError(target, "", f"a scene is saved as {SCENE_FILE_SUFFIX}")
     text = _copied(opened, target)
+    moved = partial(seen_from, source=folder or opened.parent, target=target.parent)
     if changes.settings:
-        text = _with_settings(text, changes.settings, target)
+        text = _with_settings(text, moved(changes.settings), target)
     if changes.lights is not None:
         text = _edited(text, partial(_lights, *changes.lights), target, "lights")
     if changes.materials is not None:
         text = _edited(text, partial(_materials, *changes.materials), target, "materials")
     if changes.volumes is not None:
-        text = with_volumes(text, changes.volumes, target)
+        volumes = [replace(v, overrides=moved(v.overrides)) for v in changes.volumes]
+        text = with_volumes(text, volumes, target)
     parse_scene_file(text, target)
     with atomic_file(target.resolve()) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="")
@@ -87,17 +91,17 @@ def _copied(opened: Path, target: Path) -> str:
     """The text to begin with; what it names is named as seen from ``target``."""
     if opened.suffix.lower() in GLTF_SUFFIXES:
         document = tomlkit.document()
-        toml_edit.append_table(document, "models", {"file": _relative(opened, target.parent)})
+        toml_edit.append_table(document, "models", {"file": relative(opened, target.parent)})
         return tomlkit.dumps(document)
     try:
-        text = read_file(opened).decode("utf-8")
+        text = read_text(opened)
         parse_scene_file(text, opened)
         if opened.resolve().parent == target.resolve().parent:
             return text
         document = tomlkit.parse(text)
     except (ValueError, TOMLKitError) as error:
         raise InputError(opened, "TOML", f"is broken ({error})") from error
-    _move_files(document, opened.parent, target.parent)
+    move_files(document, opened.parent, target.parent)
     return tomlkit.dumps(document)
 
 
@@ -136,43 +140,3 @@ def _holds(text: str, settings: Mapping[str, Any]) -> bool:
     except ValueError:
         return False
     return all(found.get(key) == toml_edit.plain(value) for key, value in settings.items())
-
-
-FILE_KEYS = frozenset({"file", "ies"})
-"""Keys that name a file whether it is there or not."""
-
-
-def _move_files(document: tomlkit.TOMLDocument, source: Path, target: Path) -> None:
-    """File names count from the scene file's folder: let them name the same files from another.
-
-    Outside the settings, a text that names a file there is such a name, whatever its key.
-    """
-    for key, section in document.items():
-        if key != SETTINGS:
-            _move_names(section, source, target)
-
-
-def _move_names(holder: Any, source: Path, target: Path) -> None:
-    """Of a table or an array, and of all in it."""
-    keys: list[Any] = []
-    if isinstance(holder, Mapping):
-        keys = list(holder)
-    elif isinstance(holder, list):
-        keys = list(range(len(holder)))
-    for key in keys:
-        value = holder[key]
-        if isinstance(value, Mapping | list):
-            _move_names(value, source, target)
-        elif isinstance(value, str) and (key in FILE_KEYS or _is_file(source, value)):
-            holder[key] = _relative(source / value, target)
-
-
-def _is_file(folder: Path, name: str) -> bool:
-    return bool(Path(name).suffix) and (folder / name).is_file()
-
-
-def _relative(file: Path, folder: Path) -> str:
-    try:
-        return Path(os.path.relpath(file.resolve(), folder.resolve())).as_posix()
-    except ValueError:  # another drive
-        return file.resolve().as_posix()

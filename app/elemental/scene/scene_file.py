@@ -6,13 +6,14 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, ValidationError
 
 from elemental.core.errors import CombinedInputError, InputError
-from elemental.core.files import read_file
+from elemental.core.files import read_text
 from elemental.scene.tables.base import Name, Table
 from elemental.scene.tables.cameras import CameraTable, PathTable
 from elemental.scene.tables.decals import DecalTable
@@ -20,6 +21,7 @@ from elemental.scene.tables.lights import EnvironmentTable, LightChangeTable, Li
 from elemental.scene.tables.materials import MaterialTable
 from elemental.scene.tables.models import ModelTable
 from elemental.scene.tables.motions import MotionTable
+from elemental.scene.tables.reasons import field, reason
 from elemental.scene.tables.regions import RegionTable
 from elemental.scene.tables.volumes import VolumeTable
 
@@ -42,14 +44,6 @@ class SceneFile(Table):
     decals: list[DecalTable] = []
     settings: dict[str, Any] = {}
 
-    @model_validator(mode="after")
-    def _names_differ(self) -> SceneFile:
-        names = [camera.name for camera in self.cameras]
-        doubled = sorted({name for name in names if names.count(name) > 1})
-        if doubled:
-            raise ValueError(f"two cameras are named {doubled[0]!r}")
-        return self
-
 
 def read_scene_file(path: Path) -> SceneFile:
     """Parse and check a scene file.
@@ -57,11 +51,7 @@ def read_scene_file(path: Path) -> SceneFile:
     Raises InputError for a file that can't be read or is no TOML, and CombinedInputError with a
     line for each wrong, missing or unknown key.
     """
-    try:
-        text = read_file(path).decode("utf-8")
-    except UnicodeDecodeError as error:
-        raise InputError(path, "TOML", f"is broken ({error})") from error
-    return parse_scene_file(text, path)
+    return parse_scene_file(read_text(path), path)
 
 
 def parse_scene_file(text: str, path: Path) -> SceneFile:
@@ -71,42 +61,42 @@ def parse_scene_file(text: str, path: Path) -> SceneFile:
     except (ValueError, RecursionError) as error:
         raise InputError(path, "TOML", f"is broken ({error})") from error
     try:
-        return SceneFile.model_validate(tables)
+        file = SceneFile.model_validate(tables)
     except ValidationError as error:
         found = error.errors(include_url=False, include_input=False)
-        reasons = [
-            (_field(e["loc"]), _reason(e["type"], e["msg"], e.get("ctx", {}))) for e in found
-        ]
+        reasons = [(field(e["loc"]), reason(e["type"], e.get("ctx", {}))) for e in found]
         raise CombinedInputError(path, reasons) from error
+    doubled = _doubled_names(file)
+    if doubled:
+        raise CombinedInputError(path, doubled)
+    return file
 
 
-def flat_settings(settings: dict[str, Any], prefix: str = "") -> dict[str, Any]:
+def _doubled_names(file: SceneFile) -> list[tuple[str, str]]:
+    """(field, reason) of each name that another thing of its kind has already."""
+    named: dict[str, Sequence[ModelTable | LightTable | CameraTable]] = {
+        "models": file.models,
+        "lights": file.lights,
+        "cameras": file.cameras,
+    }
+    doubled = []
+    for section, tables in named.items():
+        taken: set[str] = set()
+        for number, table in enumerate(tables):
+            if table.name is not None and table.name in taken:
+                kind = section.removesuffix("s")
+                taken_already = f"another {kind} is named {table.name!r}"
+                doubled.append((f"{section}[{number}].name", taken_already))
+            taken.add(table.name or "")
+    return doubled
+
+
+def flat_settings(settings: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
     """Nested tables as dotted keys: {"gi": {"resolution": 256}} -> {"gi.resolution": 256}."""
     flat: dict[str, Any] = {}
     for key, value in settings.items():
-        if isinstance(value, dict):
+        if isinstance(value, Mapping):
             flat |= flat_settings(value, f"{prefix}{key}.")
         else:
             flat[prefix + key] = value
     return flat
-
-
-def _field(place: tuple[int | str, ...]) -> str:
-    """("lights", 0, "kind") as lights[0].kind."""
-    field = ""
-    for step in place:
-        field += f"[{step}]" if isinstance(step, int) else f".{step}" if field else step
-    return field
-
-
-def _reason(kind: str, message: str, context: dict[str, Any]) -> str:
-    """pydantic's words in those of the other errors."""
-    if kind == "extra_forbidden":
-        return "is an unknown key"
-    if kind == "missing":
-        return "is missing"
-    if kind == "too_short":
-        return f"needs {context['min_length']} items or more, not {context['actual_length']}"
-    if kind == "too_long":
-        return f"needs {context['max_length']} items or fewer, not {context['actual_length']}"
-    return message.removeprefix("Value error, ").replace("Input should", "should")

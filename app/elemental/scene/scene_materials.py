@@ -7,7 +7,7 @@ from dataclasses import replace
 from fnmatch import fnmatchcase
 from pathlib import Path
 
-from elemental.core.errors import InputError
+from elemental.core.errors import InputError, named_by
 from elemental.core.images import read_png_jpeg_webp
 from elemental.scene.definitions import SHARED, MaterialDefinition, find_definition
 from elemental.scene.materials import Material, Texture, TextureSlot
@@ -85,8 +85,8 @@ def _image(scene: Scene, name: str, field: str, images: dict[Path, int]) -> Text
     """An image beside the scene file as one of the scene's textures, each read once."""
     path = scene.path.parent / name
     if path not in images:
-        if not path.is_file():
-            raise InputError(scene.path, field, f"{name} does not exist")
+        with named_by(scene.path, field, name):
+            pixels = read_png_jpeg_webp(path)
         images[path] = len(scene.textures)
-        scene.textures.append(Texture(path.stem, read_png_jpeg_webp(path)))
+        scene.textures.append(Texture(path.stem, pixels))
     return TextureSlot(images[path])

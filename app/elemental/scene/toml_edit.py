@@ -30,7 +30,7 @@ def rewrite(path: Path, change: Callable[[str], str]) -> None:
     target = path.resolve()
     raw = read_file(target, path)
     try:
-        text = raw.decode("utf-8")
+        text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise InputError(path, "TOML", f"is broken ({error})") from error
     changed = change(text).encode("utf-8")

@@ -16,7 +16,7 @@ from elemental import __version__
 from elemental.core.digest import digest
 from elemental.core.errors import InputError
 from elemental.core.files import read_file
-from elemental.core.paths import texture_file
+from elemental.core.paths import is_file, named_file
 from elemental.gpu.device import Device
 from elemental.report import settings_entry, write_json
 from elemental.scene.model import Scene
@@ -26,7 +26,9 @@ from elemental.settings import SETTINGS
 SCHEMA = "elemental.sequence/1"
 FILE_NAME = "sequence.json"
 
-NOT_SEEN = frozenset({"name", "path", "warnings", "notes", "settings", "animations"})
+NOT_SEEN = frozenset({
+    "name", "path", "folder", "warnings", "notes", "settings", "animations",
+})  # fmt: skip
 """Fields of a scene that no frame shows (its settings count as they end up)."""
 
 
@@ -54,8 +56,8 @@ def _named_files(stage: Stage) -> dict[str, str]:
     keys = [key for key, setting in SETTINGS.items() if setting.unit == "file"]
     overrides = [volume.overrides for volume in stage.scene.volumes]
     names = {str(s[key]) for s in (stage.settings, *overrides) for key in keys if s.get(key)}
-    files = {name: texture_file(name) for name in sorted(names)}
-    return {name: digest(file.read_bytes()) for name, file in files.items() if file.is_file()}
+    files = {name: named_file(name, stage.scene.folder) for name in sorted(names)}
+    return {name: digest(file.read_bytes()) for name, file in files.items() if is_file(file)}
 
 
 def scene_file(scene: Scene) -> str:

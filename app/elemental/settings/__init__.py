@@ -6,6 +6,6 @@ when a ``Settings`` is made, so a pass never meets a value outside its range.
 """
 
 from elemental.settings.setting import Setting
-from elemental.settings.values import SETTINGS, Mix, Settings, check_override
+from elemental.settings.values import SETTINGS, Mix, Settings, check_override, check_setting
 
-__all__ = ["SETTINGS", "Mix", "Setting", "Settings", "check_override"]
+__all__ = ["SETTINGS", "Mix", "Setting", "Settings", "check_override", "check_setting"]

@@ -18,6 +18,9 @@ SETTINGS: Mapping[str, Setting] = MappingProxyType(
     {setting.key: setting for setting in (*TABLE, *SURFACE_TABLE, *LENS_TABLE, *POST_TABLE)}
 )
 
+GROUP_TOLD = 3
+"""How many settings of a group a refusal lists."""
+
 Mix = tuple[tuple[Any, float], ...]
 """(value, share) of what can't be mixed into one value; the last has the highest priority."""
 
@@ -29,7 +32,7 @@ class Settings(Mapping[str, Any]):
         """The defaults, with ``values`` over them; raises InputError as ``replace`` does."""
         assigned = {key: setting.default for key, setting in SETTINGS.items()}
         for key, value in (values or {}).items():
-            assigned[key] = _checked("settings", key, value)
+            assigned[key] = check_setting("settings", key, value)
         self._values = assigned
         self._mixes: Mapping[str, Mix] = {}
 
@@ -65,7 +68,7 @@ class Settings(Mapping[str, Any]):
         ``file`` is where the values come from. Raises InputError(file, key, reason) for a
         key that does not exist, a value of the wrong type and one outside its range.
         """
-        flat = {key: _checked(file, key, value) for key, value in _flatten(values)}
+        flat = {key: check_setting(file, key, value) for key, value in _flatten(values)}
         return Settings({**self._values, **flat})
 
     def blended(self, values: Mapping[str, Any], mixes: Mapping[str, Mix]) -> Settings:
@@ -108,7 +111,7 @@ def check_override(file: str, key: str, value: Any) -> Any:
     """The value of a setting that volumes may override. Raises InputError(file, key, reason)."""
     if not _find(file, key).volume:
         raise InputError(file, key, "is not a setting that volumes may override")
-    return _checked(file, key, value)
+    return check_setting(file, key, value)
 
 
 def _share(part: tuple[Any, float]) -> float:
@@ -126,12 +129,16 @@ def _flatten(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str,
 def _find(file: str, key: str) -> Setting:
     if key in SETTINGS:
         return SETTINGS[key]
+    group = [known for known in SETTINGS if known.startswith(f"{key}.")]
+    if group:
+        raise InputError(file, key, f"is a group of settings: {', '.join(group[:GROUP_TOLD])}, …")
     nearest = difflib.get_close_matches(key, SETTINGS, n=1, cutoff=0.6)
     hint = f"did you mean {nearest[0]}?" if nearest else "see `elemental list settings`"
     raise InputError(file, key, f"unknown setting; {hint}")
 
 
-def _checked(file: str, key: str, value: Any) -> Any:
+def check_setting(file: str, key: str, value: Any) -> Any:
+    """The value of a setting in its own type. Raises InputError(file, key, reason)."""
     setting = _find(file, key)
     try:
         return setting.check(value)

@@ -11,10 +11,12 @@ import numpy as np
 
 from elemental.core.errors import InputError
 from elemental.core.images import write_exr
+from elemental.core.paths import named_file
 from elemental.passes.inspect import Target
 from elemental.passes.texels import Pixels
 from elemental.picture import save_picture
 from elemental.scene.evaluate import placed_camera
+from elemental.scene.save_names import name_in
 from elemental.ui import editor, reopening
 from elemental.ui.panel import buffers
 from elemental.ui.panel.file_dialog import FileDialog
@@ -162,13 +164,13 @@ def browse(desk: Desk) -> None:
     if asked is None:
         return
     key, setting, value = asked
-    folder = desk.stage.scene.path.resolve().parent
-    start = Path(value).resolve() if value else folder
+    folder = desk.stage.scene.folder.resolve()
+    start = named_file(value, folder)
     if not start.exists():
         start = folder
 
     def take(path: Path) -> None:
-        widgets.browsed[key] = str(path)
+        widgets.browsed[key] = name_in(folder, path)
 
     suffixes = FILE_SUFFIXES.get(setting.key, IMAGES)
     desk.dialog = FileDialog(f"Choose a file: {setting.key}", start, suffixes, False, take)

@@ -6,8 +6,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from elemental.core.errors import InputError
+from elemental.core.paths import named_file
 from elemental.frame import OCTREE_KEYS, SHADOW_KEYS, Renderer
 from elemental.scene.model import Scene
+from elemental.scene.named_files import FILE_KEYS
 from elemental.scene.save_scene import Changes, save_scene
 from elemental.session import Stage, own_settings
 from elemental.settings import SETTINGS, Settings
@@ -57,9 +59,12 @@ class Applied:
         return False
 
 
-def reopening_words(settings: Settings) -> list[str]:
-    """``key=value`` of the settings that the scene is read by."""
-    return [f"{key}={SETTINGS[key].value_text(settings[key])}" for key in sorted(REOPENING)]
+def reopening_words(settings: Settings, folder: Path) -> list[str]:
+    """``key=value`` of the settings that the scene is read by; files count from ``folder``."""
+    values = {key: settings[key] for key in sorted(REOPENING)}
+    for key in FILE_KEYS & REOPENING:
+        values[key] = str(named_file(values[key], folder.resolve())) if values[key] else ""
+    return [f"{key}={SETTINGS[key].value_text(value)}" for key, value in values.items()]
 
 
 def changed_keys(before: Settings, after: Settings) -> frozenset[str]:
@@ -81,7 +86,7 @@ def save(document: Document, scene: Scene, target: Path) -> None:
             None if same(state.materials, saved.materials) else (saved.materials, state.materials)
         ),
     )
-    save_scene(scene.path, target, changes)
+    save_scene(scene.path, target, changes, scene.folder)
     document.mark_saved()
 
 

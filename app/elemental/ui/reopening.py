@@ -31,16 +31,17 @@ def reopen(desk: Desk) -> None:
     """Read the scene by the document's settings; an edit that can't be had is taken back."""
     document = desk.document
     settings = document.state.settings
+    folder = desk.stage.scene.folder
+    words = reopening_words(settings, folder)
     try:
-        stage = set_stage(
-            desk.words.scene, reopening_words(settings), Viewpoint(), desk.renderer.size
-        )
+        stage = set_stage(desk.words.scene, words, Viewpoint(), desk.renderer.size)
     except InputError as error:
         desk.say(str(error), "error")
         document.refuse()
         desk.applied.state = document.state
         desk.renderer.set_settings(document.state.settings)
         return
+    stage.scene.folder = folder  # the document's names count from there, wherever it was saved
     desk.show(replace(stage, settings=settings))
     read = document_of(stage).state
     if len(read.lights) != len(document.state.lights):  # the default sun comes and goes

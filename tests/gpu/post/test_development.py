@@ -128,8 +128,18 @@ def test_a_bad_table_is_refused_before_the_first_frame(
     room = darkroom()
     room.set(color_grading__lut=str(tmp_path / "none.cube"))
     plain = room.develop(flat(4, 4, 0.5))  # in a running frame the effect goes without
-    assert room.history.problems() == [f"{tmp_path / 'none.cube'}: does not exist"]
+    assert room.history.problems() == [f"{LUT}: {tmp_path / 'none.cube'}: does not exist"]
     np.testing.assert_array_equal(plain, darkroom().develop(flat(4, 4, 0.5)))
+
+
+def test_a_bad_table_leaves_the_last_good_one(darkroom: MakeDarkroom, tmp_path: Path) -> None:
+    (tmp_path / "inverted.cube").write_text("LUT_1D_SIZE 2\n1 1 1\n0 0 0\n")
+    room = darkroom(color_grading__lut=str(tmp_path / "inverted.cube"))
+    before = room.develop(flat(4, 4, 0.1))
+    room.set(color_grading__lut=str(tmp_path / "none.cube"))
+    np.testing.assert_array_equal(room.develop(flat(4, 4, 0.1)), before)
+    room.set(color_grading__lut="")
+    assert (room.develop(flat(4, 4, 0.1)) != before).any()
 
 
 def test_grain_has_its_strength_and_no_mean(darkroom: MakeDarkroom) -> None:

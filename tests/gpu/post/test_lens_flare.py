@@ -21,6 +21,7 @@ from gpu.post.darkroom import Array, Darkroom, flat
 BLACK = {tint.replace(".", "__"): (0.0, 0.0, 0.0) for tint, _ in REFLECTIONS}
 ON: dict[str, Any] = {"lens_flare__intensity": 16.0, **BLACK}
 SHARE = 16.0 * REFLECTED
+SHAPE = "lens_flare.bokeh_shape"
 SIZE = (128, 256)
 
 
@@ -42,7 +43,7 @@ def flares(room: Darkroom, pixels: Array) -> Array:
             half,
             None,
             room.settings,
-            shape=history.textures.mask("bokeh_disc.png"),
+            shape=history.textures.mask(SHAPE, "bokeh_disc.png"),
             quad=history.quad,
             counted=history.sprites,
             width=picture.width,
@@ -135,7 +136,7 @@ def test_sprites_are_appended_in_order(darkroom: MakeDarkroom, bright: int) -> N
     def passes(g: Graph, picture: AnyTexture, _: AnyTexture) -> TextureHandle:
         exposed = room.history.eye.update(g, None, room.settings, None)
         quarter = downsample(g, downsample(g, picture), "quarter")
-        mask = room.history.textures.mask("bokeh_disc.png")
+        mask = room.history.textures.mask(SHAPE, "bokeh_disc.png")
         assert mask is not None
         block = lens_flare._block(room.settings, 1.0, mask, 2048)
         counts, sprites = lens_flare.append_sprites(g, exposed, quarter, block)

@@ -162,7 +162,7 @@ def test_a_material_is_found_by_name_or_by_file(tmp_path: Path) -> None:
     assert find_definition("lava", tmp_path, Path("s.toml"), "f") is builtin("lava")
     with pytest.raises(InputError, match=r"s\.toml: f: no material is named 'laav'; did you mean"):
         find_definition("laav", tmp_path, Path("s.toml"), "f")
-    with pytest.raises(InputError, match=r"s\.toml: f: none\.glsl does not exist"):
+    with pytest.raises(InputError, match=r"s\.toml: f: none\.glsl: does not exist"):
         find_definition("none.glsl", tmp_path, Path("s.toml"), "f")
 
 

@@ -178,11 +178,6 @@ def test_whatever_is_cut_off_or_changed_is_read_or_refused() -> None:
         assert np.isfinite(found.image(4, 8)).all()
 
 
-def test_a_missing_file_blames_who_asked_for_it(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"yard.toml: lights\[0\].ies: does not exist"):
-        read_ies(tmp_path / "none.ies", "yard.toml", "lights[0].ies")
-
-
 @pytest.mark.parametrize(
     ("field", "value", "reason"),
     [

@@ -174,9 +174,9 @@ def test_every_mistake_is_a_line(tmp_path: Path) -> None:
         "models[0].exposure_ev: is an unknown key",
         "lights[0].kind: should be 'directional', 'point' or 'spot'",
         "lights[1].position: needs 3 items or more, not 2",
-        "lights[1].intensity: should be greater than or equal to 0",
+        "lights[1].intensity: should be 0 or more",
         "cameras[0].target: is missing",
-        "regions[0].level_offset: should be less than or equal to 2",
+        "regions[0].level_offset: should be 2 or less",
     ]
 
 
@@ -187,8 +187,8 @@ def test_every_mistake_is_a_line(tmp_path: Path) -> None:
         ("models = []", "models: needs 1 items or more, not 0"),
         (MODEL + "scale = 0", "models[0].scale: should be greater than 0"),
         (MODEL + "scale = nan", "models[0].scale: should be a finite number"),
-        (MODEL + 'scale = "2"', "models[0].scale: should be a valid number"),
-        ('[[models]]\nfile = "none.glb"', "models[0].file: none.glb does not exist"),
+        (MODEL + 'scale = "2"', "models[0].scale: should be a number"),
+        ('[[models]]\nfile = "none.glb"', "models[0].file: none.glb: does not exist"),
         (MODEL + "[sky]", "sky: is an unknown key"),
         (MODEL + '[[lights]]\nkind = "spot"', "lights[0]: a spot light needs a position"),
         (
@@ -201,7 +201,7 @@ def test_every_mistake_is_a_line(tmp_path: Path) -> None:
         ),
         (
             MODEL + '[[cameras]]\nname = "a"\neye = [1, 1, 1]\ntarget = [0, 0, 0]\n' * 2,
-            "two cameras are named 'a'",
+            "cameras[1].name: another camera is named 'a'",
         ),
         (
             MODEL + "[[regions]]\nmin = [0, 0, 0]\nmax = [1, 0, 1]\nlevel_offset = 1",
@@ -226,8 +226,13 @@ def test_no_toml(tmp_path: Path) -> None:
 
 def test_not_utf_8(tmp_path: Path) -> None:
     (tmp_path / "a.toml").write_bytes(b"\xff\xff")
-    with pytest.raises(InputError, match="TOML: is broken"):
+    with pytest.raises(InputError, match=r"a\.toml: is not UTF-8 text \(byte 1\)"):
         load_scene(tmp_path / "a.toml", default_lights=False)
+
+
+def test_a_byte_order_mark_is_no_mistake(tmp_path: Path) -> None:
+    (tmp_path / "a.toml").write_bytes(b"\xef\xbb\xbf" + MODEL.encode())
+    assert load_scene(tmp_path / "a.toml", default_lights=False).triangle_count == 12
 
 
 def test_a_mistake_in_a_model_names_the_model(tmp_path: Path) -> None:
@@ -274,3 +279,22 @@ def test_edited_files_load_or_are_refused(at: int, length: int, text: str, tmp_p
     except InputError:
         return
     assert scene.triangle_count > 0
+
+
+def test_a_model_that_stands_in_itself_is_warned_of(tmp_path: Path) -> None:
+    covered = "models[1]: stands where models[0] of the same file does"
+    for toml, expected in (
+        (MODEL * 2, [covered]),
+        (MODEL + MODEL + "scale = 2.0\n", []),
+        (MODEL + MODEL + 'name = "b"\n[[motions]]\nmodel = "b"\nspin = { period = 1.0 }\n', []),
+    ):
+        told = load(tmp_path, toml).warnings
+        assert told == [f"{tmp_path / 'scene.toml'}: {line}" for line in expected]
+
+
+def test_settings_are_told_by_their_place(tmp_path: Path) -> None:
+    toml = f"{MODEL}[settings]\nfoo.bar = 1\ngi = 1\n"
+    assert mistakes(tmp_path, toml) == [
+        "settings.foo.bar: unknown setting; see `elemental list settings`",
+        "settings.gi: is a group of settings: gi.enabled, gi.resolution, gi.area_lights, …",
+    ]

@@ -73,14 +73,14 @@ def test_an_image_is_read_once_and_may_stand_for_gltf_s_own(tmp_path: Path) -> N
     [
         ('name = "None"', "materials[0].name: no material is named 'None'; known: "),
         ('name = "*"\nshader = "laav"', "materials[0].shader: no material is named 'laav'; did"),
-        ('name = "*"\nshader = "no.glsl"', "materials[0].shader: no.glsl does not exist"),
-        ('name = "*"\nshader = 3', "materials[0].shader: should be a valid string"),
+        ('name = "*"\nshader = "no.glsl"', "materials[0].shader: no.glsl: does not exist"),
+        ('name = "*"\nshader = 3', "materials[0].shader: should be a text"),
         ('name = "*"\nparameters = { roughnes = 1 }', "materials[0].parameters.roughnes: is an"),
         ('name = "*"\nparameters = { roughness = 7 }', "parameters.roughness: should be 0 to 1"),
         ('name = "*"\nparameters = { roughness = "x" }', "roughness: should be a number"),
         (
             'name = "*"\nshader = "rust.glsl"\nparameters = { mask = "none.png" }',
-            "materials[0].parameters.mask: none.png does not exist",
+            "materials[0].parameters.mask: none.png: does not exist",
         ),
         (
             'name = "*"\nshader = "rust.glsl"\nparameters = { mask = "rust.glsl" }',

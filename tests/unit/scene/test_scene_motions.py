@@ -170,7 +170,7 @@ MOTION = '[[motions]]\nmodel = "ball"\nspin = { period = 1.0 }\n'
         ('[[motions]]\nmodel = "ball"\nkeys = [{ time = 1 }, { time = 1 }]\n',
          "motions[0]: the keys' times do not increase"),
         ('[[models]]\nfile = "still.glb"\nname = "ball"\n' + MOTION,
-         "motions[0].model: two are named 'ball'"),
+         "models[2].name: another model is named 'ball'"),
         ('[settings]\nscene.animation = "walk"\n',
          "scene.animation: no animation is named 'walk'; known: slide"),
     ],

@@ -53,12 +53,14 @@ def develop(
             half,
             light,
             s,
-            shape=history.textures.mask(s["lens_flare.bokeh_shape"]),
+            shape=history.textures.mask("lens_flare.bokeh_shape", s["lens_flare.bokeh_shape"]),
             quad=history.quad,
             counted=history.sprites,
             width=scene_color.width,
         )
-    dirt = history.textures.mask(s["bloom.dirt_mask"]) if s["bloom.dirt_intensity"] else None
+    dirt = None
+    if s["bloom.dirt_intensity"]:
+        dirt = history.textures.mask("bloom.dirt_mask", s["bloom.dirt_mask"])
     graded = history.textures.grading(s)
     film = film_block(s, [(lut.table, share) for lut, share in graded], int(view["frame"]))
     luts = [lut for lut, _ in graded]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,9 @@ from elemental.passes.post.exposure import EyeAdaptation
 from elemental.passes.post.lens_flare import Quad, SpriteCounters
 from elemental.passes.post.textures import PostTextures
 
+HERE = Path()
+MASKS = ("bloom.dirt_mask", "lens_flare.bokeh_shape")
+"""Settings that name an image."""
 LONGEST_STEP_S = 1.0
 """More scene time than this between two frames is a cut, s [inferred]: nothing is blended over."""
 
@@ -20,10 +24,11 @@ LONGEST_STEP_S = 1.0
 class PostHistory:
     """State of the effects of one renderer."""
 
-    def __init__(self, device: Device, settings: Mapping[str, Any]) -> None:
-        """Raises InputError for a texture that ``settings`` name and that can't be loaded."""
+    def __init__(self, device: Device, settings: Mapping[str, Any], folder: Path = HERE) -> None:
+        """``folder``: what names in settings count from. Raises InputError for a texture that
+        ``settings`` name and that can't be loaded."""
         self.eye = EyeAdaptation(device)
-        self.textures = PostTextures(device)
+        self.textures = PostTextures(device, folder)
         self.quad = Quad(device)
         self.sprites = SpriteCounters()
         self.view_before: Block | None = None
@@ -32,8 +37,8 @@ class PostHistory:
         """Scene time since that frame; None where there is none."""
         self._last_view: Block | None = None
         self.textures.lut(settings["color_grading.lut"])
-        self.textures.mask(settings["bloom.dirt_mask"])
-        self.textures.mask(settings["lens_flare.bokeh_shape"])
+        for key in MASKS:
+            self.textures.mask(key, settings[key])
         for problem in self.textures.problems.values():
             self.release()
             raise problem

@@ -12,7 +12,7 @@ import numpy as np
 from elemental.core.cube_lut import CubeLut, read_cube_lut
 from elemental.core.errors import InputError
 from elemental.core.images import read_png_jpeg_webp
-from elemental.core.paths import texture_file
+from elemental.core.paths import named_file
 from elemental.gpu.device import Device
 from elemental.gpu.formats import RGBA16F, SRGB8_A8
 from elemental.gpu.resources import Texture, mip_count
@@ -45,20 +45,22 @@ class Mask:
 
 
 class PostTextures:
-    """What is loaded, by the name that a setting gives: a file of content/textures/, or a path.
+    """What is loaded, by the name that a setting gives: a file in ``folder`` or content/textures/.
 
-    ``problems``: names that could not be loaded, and why. The effect then goes without.
+    ``problems``: names that could not be loaded, and why. What the setting named before stays then;
+    where it named nothing, the effect goes without.
     """
 
-    def __init__(self, device: Device) -> None:
-        self._device = device
-        self._luts: dict[str, Lut | None] = {}
-        self._masks: dict[str, Mask | None] = {}
+    def __init__(self, device: Device, folder: Path) -> None:
+        self._device, self._folder = device, folder
+        self._luts: dict[str, Lut] = {}
+        self._masks: dict[str, Mask] = {}
+        self._last_name: dict[str, str] = {}
         self.problems: dict[str, InputError] = {}
 
     def lut(self, name: str) -> Lut | None:
-        """The table of a `.cube` file; None for an empty name and for one in ``problems``."""
-        return self._get(self._luts, name, self._load_lut)
+        """The table of a `.cube` file; None for an empty name."""
+        return self._get("color_grading.lut", self._luts, name, self._load_lut)
 
     def grading(self, s: Settings) -> list[tuple[Lut, float]]:
         """The tables that grade the picture, two at most, each with its share of it.
@@ -74,33 +76,30 @@ class PostTextures:
         found = [(self.lut(name), intensity * share) for name, share in named[:MOST_LUTS]]
         return [(lut, share) for lut, share in found if lut is not None]
 
-    def mask(self, name: str) -> Mask | None:
-        """A PNG, JPEG or WebP image; None as for ``lut``."""
-        return self._get(self._masks, name, self._load_mask)
+    def mask(self, key: str, name: str) -> Mask | None:
+        """A PNG, JPEG or WebP image that the setting ``key`` names; None for an empty name."""
+        return self._get(key, self._masks, name, self._load_mask)
 
     def release(self) -> None:
         """Free everything."""
         for lut in self._luts.values():
-            if lut is not None:
-                lut.texture.release()
+            lut.texture.release()
         for mask in self._masks.values():
-            if mask is not None:
-                mask.texture.release()
+            mask.texture.release()
 
-    def _get(self, known: dict[str, T | None], name: str, load: Callable[[Path], T]) -> T | None:
+    def _get(self, key: str, known: dict[str, T], name: str, load: Callable[[Path], T]) -> T | None:
         if not name:
             return None
-        if name not in known:
+        if name not in known and name not in self.problems:
             try:
-                known[name] = load(texture_file(name))
+                known[name] = load(named_file(name, self._folder))
             except InputError as error:
-                self.problems[name] = error
-                known[name] = None
-        return known[name]
+                self.problems[name] = InputError(key, name, error.reason)
+        if name in known:
+            self._last_name[key] = name
+        return known.get(self._last_name.get(key, ""))
 
     def _load_lut(self, path: Path) -> Lut:
-        if path.suffix.lower() != ".cube":
-            raise InputError(path, "", "expected a .cube file")
         lut = read_cube_lut(path)
         colors = np.clip(lut.table, -HALF_MAX, HALF_MAX)
         if not lut.is_cube and lut.size > MOST_CURVE_TEXELS:

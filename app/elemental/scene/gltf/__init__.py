@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from elemental.core.errors import InputError
 from elemental.scene.gltf.accessors import Accessors
 from elemental.scene.gltf.animations import chosen_clips, held_values, read_animations
 from elemental.scene.gltf.container import Document
@@ -17,7 +18,9 @@ from elemental.scene.gltf.skins import Skins
 from elemental.scene.gltf.textures import Textures
 from elemental.scene.model import Scene
 
-__all__ = ["load_gltf"]
+__all__ = ["GLTF_SUFFIXES", "load_gltf"]
+
+GLTF_SUFFIXES = (".gltf", ".glb")
 
 
 def load_gltf(path: Path, animation: str = "all") -> Scene:
@@ -25,8 +28,10 @@ def load_gltf(path: Path, animation: str = "all") -> Scene:
 
     `animation`: the name of the one that plays, or "all"; no such one, and all stand still. What
     moves stands as without its animations until `extent.settle`. The scene may be empty. Raises
-    InputError for a missing or broken file.
+    InputError for a missing or broken file, and for one of another suffix.
     """
+    if path.suffix.lower() not in GLTF_SUFFIXES:
+        raise InputError(path, "", "expected a .gltf or .glb file")
     document = Document(path)
     check_extensions(document)
     accessors = Accessors(document)
