@@ -135,3 +135,26 @@ def test_a_watched_folder_tells_of_edits(rig: MakeRig, artist: Artist, device: D
             pytest.fail("the edit was never taken up")
     finally:
         device.stop_watching_shaders()
+
+
+@pytest.mark.parametrize(
+    ("code", "told"),
+    [
+        ("float alone() { return 1.0; }", "{path}: has no function `void material("),
+        ("// void material(inout Surface s)", "{path}: has no function `void material("),
+        ("void material(inout Surface s) { s.albedo = vec3(1.0); }", "{path}: lib/material.glsl:"),
+        ('#include "lib/gone.glsl"', "{path}:5: can't read lib/gone.glsl: No such file"),
+        ('#include "lib"', "{path}:5: can't read lib: Is a directory"),
+    ],
+    ids=["no function", "in a comment", "other arguments", "no such include", "a folder"],
+)
+def test_what_a_material_lacks_is_told_by_its_own_file(
+    rig: MakeRig, artist: Artist, device: Device, code: str, told: str
+) -> None:
+    heading = "\n".join(FAULT.splitlines()[:4])
+    good = "\nvoid material(inout Surface s, MaterialInput m, Parameters p) {}\n"
+    text = f"{heading}\n{code}{good if '#include' in code else ''}\n"
+    albedo(draws(rig, artist, text))
+    (problem, *_) = device.library.problems()
+    assert problem.startswith(told.format(path=artist.path))
+    assert "/glsl/" not in problem.replace(str(artist.path), "")
