@@ -11,7 +11,7 @@ import pytest
 from elemental.core.layout import layouts
 from elemental.gpu.device import Device
 from elemental.passes.decal import Decals
-from elemental.scene.model import Decal, Texture, TextureSlot
+from elemental.scene.model import Decal, Texture
 from formulas import MIRRORED_BY_ROUGH_DIELECTRIC
 from gpu.artist import ABOVE, HALVES, Artist, albedo, draws, emission, halves
 from gpu.rig import IDENTITY, MakeRig, at, camera, material, mesh, read, scene, sun, vector
@@ -109,7 +109,7 @@ void material(inout Surface s, MaterialInput m, Parameters p) {
     worn = (
         worn.with_value("shown", True).with_value("tint", [1, 0.5, 0, 0.5]).with_value("steps", 4)
     )
-    view.gpu.set_material(0, worn.with_texture("mask", TextureSlot(0)))
+    view.gpu.set_material(0, worn.with_image("mask", 0))
     view.gpu.update(None)
     assert albedo(view)[32, 48] == pytest.approx([0.5 * 128 / 255, 0.25, 0.25], abs=4e-3)
 

@@ -55,6 +55,8 @@ class Device:
         if self.info.software:
             keep_freed_memory()
         self.storage_limit = self.gl.integer(c.MAX_SHADER_STORAGE_BLOCK_SIZE)
+        self.largest_texture_px = self.gl.integer(c.MAX_TEXTURE_SIZE)
+        """Longest side of a texture."""
         self.max_anisotropy = float(ctx.max_anisotropy)
         self.scratch_unit = ctx.max_texture_units - 1
         """Texture unit of uploads and allocations, used by no pass."""

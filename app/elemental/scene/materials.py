@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -19,13 +20,17 @@ AlphaMode: TypeAlias = Literal["opaque", "mask", "blend"]
 
 @dataclass
 class Texture:
-    """An image with its sampler. `pixels` is (H, W, 4) uint8 as stored: row 0 is v = 0."""
+    """An image with its sampler. `pixels` is (H, W, 4) uint8 as stored: row 0 is v = 0.
+
+    `file` is the image file that a scene file or the panel named; None for a model's own image.
+    """
 
     name: str
     pixels: ByteArray
     wrap_u: Wrap = "repeat"
     wrap_v: Wrap = "repeat"
     nearest: bool = False
+    file: Path | None = None
 
 
 @dataclass
@@ -144,10 +149,33 @@ class Material:
             changed["alpha_mode"] = "blend"
         return replace(self, **changed)  # type: ignore[arg-type]  # the names are its fields'
 
-    def with_texture(self, name: str, slot: TextureSlot) -> Material:
-        """This material with an image for one of its texture parameters."""
+    def texture(self, name: str) -> TextureSlot | None:
+        """The image of one of its texture parameters; None where that is plain."""
+        slot: TextureSlot | None = (
+            getattr(self, name) if name in SHARED else self.textures.get(name)
+        )
+        return slot
+
+    def with_image(self, name: str, texture: int) -> Material:
+        """This material with `Scene.textures[texture]` for one of its texture parameters.
+
+        It lies on the surface as the image before it did.
+        """
+        before = self.texture(name)
+        if before is None:
+            return self.with_slot(name, TextureSlot(texture))
+        return self.with_slot(name, replace(before, texture=texture))
+
+    def without_image(self, name: str) -> Material:
+        """This material with nothing for one of its texture parameters: it is plain."""
+        bare = self.with_slot(name, None)
+        return replace(bare, values={k: v for k, v in bare.values.items() if k != name})
+
+    def with_slot(self, name: str, slot: TextureSlot | None) -> Material:
+        """This material with another slot for one of its texture parameters."""
         if name not in SHARED:
-            return replace(self, textures={**self.textures, name: slot})
+            others = {k: v for k, v in self.textures.items() if k != name}
+            return replace(self, textures=others if slot is None else {**others, name: slot})
         changed: dict[str, object] = {name: slot}
         return replace(self, **changed)  # type: ignore[arg-type]  # the names are its fields'
 

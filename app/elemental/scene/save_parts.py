@@ -5,18 +5,25 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from elemental.scene import toml_edit
+from elemental.scene.decals import Decal
 from elemental.scene.defaults import default_sun
-from elemental.scene.definitions import SHARED
+from elemental.scene.definitions import SHARED, MaterialDefinition, materials_folder
 from elemental.scene.lights import Light
-from elemental.scene.materials import Material
+from elemental.scene.materials import Material, Texture
+from elemental.scene.save_names import relative
 
 LIGHT_KEYS = ("color", "intensity", "position", "direction", "source_radius", "casts_shadow")
 """Keys of a light's table that hold the field of that name as it is."""
+
+DRAW_STATES = ("double_sided", "alpha_mode")
+"""Keys of a material's table that hold the field of that name."""
 
 
 def put_lights(document: Any, before: Sequence[Light], after: Sequence[Light]) -> None:
@@ -57,26 +64,90 @@ def _light_changes(old: Light, new: Light) -> dict[str, Any]:
     return changes
 
 
-def put_materials(document: Any, before: Sequence[Material], after: Sequence[Material]) -> None:
-    """Assign what changed of each material, in a table of its own name, the last of that name."""
-    for old, new in zip(before, after, strict=True):
+@dataclass(frozen=True)
+class MaterialChanges:
+    """Materials as they were read and as they are, and what their numbers stand for."""
+
+    before: Sequence[Material]
+    after: Sequence[Material]
+    textures: Sequence[Texture] = ()
+    decals: Sequence[Decal] = ()
+
+
+def put_materials(document: Any, changes: MaterialChanges, folder: Path) -> None:
+    """Assign what changed of each material, in a table of its own name, the last of that name;
+    what decals project, in their tables. Files are named as seen from `folder`.
+    """
+    for number, (old, new) in enumerate(zip(changes.before, changes.after, strict=True)):
         parameters = _material_changes(old, new)
+        images = _image_changes(old, new, changes.textures, folder)
+        states: dict[str, Any] = {
+            key: getattr(new, key) for key in DRAW_STATES if getattr(new, key) != getattr(old, key)
+        }
         is_other = new.definition != old.definition
-        if not parameters and not is_other:
+        if not (parameters or images or states or is_other):
             continue
-        table = _named(document, "materials", literal(new.name))
+        values = {**parameters, **images}
+        gone = [key for key, value in values.items() if value is None]
+        kept = {key: value for key, value in values.items() if value is not None}
+        stuck = [k for k, decal in enumerate(changes.decals) if decal.material == number]
         if is_other:
-            toml_edit.assign(table, "shader", new.definition.name)
-        for key, value in parameters.items():
-            toml_edit.assign_setting(table, "parameters", key, value)
+            states["shader"] = _shader_name(new.definition, folder)
+        if stuck:
+            of_it = tables = [document["decals"][k] for k in stuck]
+            states = {key: value for key, value in states.items() if key not in DRAW_STATES}
+        else:
+            name = literal(new.name)
+            of_it = [t for t in document.get("materials", []) if t.get("name") == name]
+            tables = [_named(document, "materials", name)] if kept or states else []
+        for key in gone:
+            _drop_parameter(of_it, key)
+        for table in tables:
+            for key, value in states.items():
+                toml_edit.assign(table, key, value)
+            for key, value in kept.items():
+                toml_edit.assign_setting(table, "parameters", key, value)
+
+
+def _drop_parameter(tables: Sequence[Any], key: str) -> None:
+    """Leave a key out of all tables, so that what is below shows. Raises CannotEditError where
+    none has it."""
+    having = [table for table in tables if key in table.get("parameters", {})]
+    if not having:
+        raise toml_edit.CannotEditError("a model's own image can't be named from outside")
+    for table in having:
+        toml_edit.drop_setting(table, "parameters", key)
+
+
+def _shader_name(definition: MaterialDefinition, folder: Path) -> str:
+    own = definition.file.resolve().parent == materials_folder().resolve()
+    return definition.name if own else relative(definition.file, folder)
+
+
+def _image_changes(
+    old: Material, new: Material, textures: Sequence[Texture], folder: Path
+) -> dict[str, str | None]:
+    """Images that differ: their files, the name of a plain one, or None for a model's own image."""
+    changes: dict[str, str | None] = {}
+    for parameter in new.definition.parameters:
+        name = parameter.name
+        if parameter.kind != "texture":
+            continue
+        slot, was = new.texture(name), old.texture(name)
+        if slot is not None and (was is None or was.texture != slot.texture):
+            file = textures[slot.texture].file
+            changes[name] = None if file is None else relative(file, folder)
+        elif slot is None and was is not None:
+            changes[name] = str(parameter.default if name in SHARED else new.value(name))
+    return changes
 
 
 def _material_changes(old: Material, new: Material) -> dict[str, Any]:
     changes: dict[str, Any] = {}
     for parameter in new.definition.parameters:
-        if parameter.kind == "texture":
-            continue
         name = parameter.name
+        if parameter.kind == "texture" and (name in SHARED or new.texture(name) is not None):
+            continue
         value = new.value(name)
         is_known = name in SHARED or old.definition.parameter(name) is not None
         if value != (old.value(name) if is_known else parameter.default):

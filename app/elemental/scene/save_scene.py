@@ -22,9 +22,8 @@ from elemental.scene import toml_edit
 from elemental.scene.gltf import GLTF_SUFFIXES
 from elemental.scene.lights import Light
 from elemental.scene.load import SCENE_FILE_SUFFIX
-from elemental.scene.materials import Material
 from elemental.scene.save_names import move_files, relative, seen_from
-from elemental.scene.save_parts import put_lights, put_materials
+from elemental.scene.save_parts import MaterialChanges, put_lights, put_materials
 from elemental.scene.scene_file import flat_settings, parse_scene_file
 from elemental.scene.volume_save import with_volumes
 from elemental.scene.volumes import Volume
@@ -36,13 +35,13 @@ _Assign = Callable[[Any, str, str, Any], None]
 
 @dataclass(frozen=True)
 class Changes:
-    """What of a scene is not as in its file; lights and materials as (before, after)."""
+    """What of a scene is not as in its file; lights as (before, after)."""
 
     settings: Mapping[str, Any] = field(default_factory=dict)
     """Flat keys; others stay as they are."""
     volumes: Sequence[Volume] | None = None
     lights: tuple[Sequence[Light], Sequence[Light]] | None = None
-    materials: tuple[Sequence[Material], Sequence[Material]] | None = None
+    materials: MaterialChanges | None = None
 
 
 def save_scene(opened: Path, target: Path, changes: Changes, folder: Path | None = None) -> None:
@@ -62,7 +61,8 @@ def save_scene(opened: Path, target: Path, changes: Changes, folder: Path | None
     if changes.lights is not None:
         text = _edited(text, partial(_lights, *changes.lights), target, "lights")
     if changes.materials is not None:
-        text = _edited(text, partial(_materials, *changes.materials), target, "materials")
+        put = partial(put_materials, changes=changes.materials, folder=target.parent)
+        text = _edited(text, put, target, "materials")
     if changes.volumes is not None:
         volumes = [replace(v, overrides=moved(v.overrides)) for v in changes.volumes]
         text = with_volumes(text, volumes, target)
@@ -73,10 +73,6 @@ def save_scene(opened: Path, target: Path, changes: Changes, folder: Path | None
 
 def _lights(before: Sequence[Light], after: Sequence[Light], document: Any) -> None:
     put_lights(document, before, after)
-
-
-def _materials(before: Sequence[Material], after: Sequence[Material], document: Any) -> None:
-    put_materials(document, before, after)
 
 
 def _edited(text: str, edit: Callable[[Any], None], target: Path, section: str) -> str:

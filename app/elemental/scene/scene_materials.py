@@ -10,7 +10,7 @@ from pathlib import Path
 from elemental.core.errors import InputError, named_by
 from elemental.core.images import read_png_jpeg_webp
 from elemental.scene.definitions import SHARED, MaterialDefinition, find_definition
-from elemental.scene.materials import Material, Texture, TextureSlot
+from elemental.scene.materials import Material, Texture
 from elemental.scene.model import Scene
 from elemental.scene.parameters import PLAIN_TEXTURES
 from elemental.scene.tables.materials import MaterialTable
@@ -73,20 +73,27 @@ def valued(
                 continue
         except InputError as error:
             raise InputError(scene.path, f"{field}.{name}", error.reason) from None
-        if checked in PLAIN_TEXTURES and name not in SHARED:
-            material = material.with_value(name, checked)
+        if checked == parameter.default and checked in PLAIN_TEXTURES:
+            material = material.without_image(name)
+        elif checked in PLAIN_TEXTURES and name not in SHARED:
+            material = material.without_image(name).with_value(name, checked)
         else:
-            slot = _image(scene, str(checked), f"{field}.{name}", images)
-            material = material.with_texture(name, slot)
+            number = _image(scene, str(checked), f"{field}.{name}", images)
+            material = material.with_image(name, number)
     return material
 
 
-def _image(scene: Scene, name: str, field: str, images: dict[Path, int]) -> TextureSlot:
+def _image(scene: Scene, name: str, field: str, images: dict[Path, int]) -> int:
     """An image beside the scene file as one of the scene's textures, each read once."""
     path = scene.path.parent / name
     if path not in images:
         with named_by(scene.path, field, name):
-            pixels = read_png_jpeg_webp(path)
+            texture = read_texture(path)
         images[path] = len(scene.textures)
-        scene.textures.append(Texture(path.stem, pixels))
-    return TextureSlot(images[path])
+        scene.textures.append(texture)
+    return images[path]
+
+
+def read_texture(path: Path) -> Texture:
+    """An image file as a texture that repeats. Raises InputError."""
+    return Texture(path.stem, read_png_jpeg_webp(path), file=path)

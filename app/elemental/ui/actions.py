@@ -15,9 +15,13 @@ from elemental.core.paths import named_file
 from elemental.passes.inspect import Target
 from elemental.passes.texels import Pixels
 from elemental.picture import save_picture
+from elemental.scene.definitions import SHARED
 from elemental.scene.evaluate import placed_camera
+from elemental.scene.materials import Texture
+from elemental.scene.parameters import PLAIN_TEXTURES
 from elemental.scene.save_names import name_in
 from elemental.ui import editor, reopening
+from elemental.ui.images import Place
 from elemental.ui.panel import buffers
 from elemental.ui.panel.file_dialog import FileDialog
 from elemental.ui.panel.scene import Selection
@@ -163,17 +167,52 @@ def browse(desk: Desk) -> None:
     asked, widgets.browsing = widgets.browsing, None
     if asked is None:
         return
-    key, setting, value = asked
-    folder = desk.stage.scene.folder.resolve()
+    key, setting, value, base = asked
+    folder = desk.stage.scene.folder.resolve() if base is None else base.resolve()
     start = named_file(value, folder)
     if not start.exists():
         start = folder
 
     def take(path: Path) -> None:
-        widgets.browsed[key] = name_in(folder, path)
+        widgets.browsed[key] = name_in(folder, path) if base is None else str(path)
 
     suffixes = FILE_SUFFIXES.get(setting.key, IMAGES)
     desk.dialog = FileDialog(f"Choose a file: {setting.key}", start, suffixes, False, take)
+
+
+def choose_image(desk: Desk, place: Place, text: str) -> None:
+    """Have another image for a material's texture, from the next frames on; no text: none."""
+    index, name = place
+    document, scene, reader = desk.document, desk.stage.scene, desk.images
+    reader.forget(place)
+    material = document.state.materials[index]
+    parameter = material.definition.parameter(name)
+    plain = parameter is not None and parameter.default
+    if text.strip() in ("", plain):
+        document.set_material(index, material.without_image(name))
+        return
+    if text in PLAIN_TEXTURES and name not in SHARED:
+        document.set_material(index, material.without_image(name).with_value(name, text))
+        return
+
+    def take(texture: Texture) -> None:
+        scene.textures.append(texture)
+        now = document.state.materials[index]
+        document.set_material(index, now.with_image(name, len(scene.textures) - 1))
+
+    reader.ask(place, named_file(text.strip(), scene.path.parent.resolve()), take)
+
+
+def put_image_back(desk: Desk, place: Place) -> None:
+    """The image of a material's texture as it is saved."""
+    index, name = place
+    document = desk.document
+    desk.images.forget(place)
+    saved = document.saved.materials[index].texture(name)
+    material = document.state.materials[index].without_image(name)
+    if saved is not None:
+        material = material.with_slot(name, saved)
+    document.set_material(index, material)
 
 
 def _start_sequence(desk: Desk) -> None:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from elemental.core.errors import InputError
 from elemental.frame import VIEWS, Frame, Renderer
 from elemental.gpu.device import Device
 from elemental.gpu.resources import Texture
@@ -24,6 +25,7 @@ from elemental.ui.clock import SceneClock
 from elemental.ui.editor import Applied, document_of
 from elemental.ui.fly_camera import FlyCamera
 from elemental.ui.gui import Gui
+from elemental.ui.images import ImageReader
 from elemental.ui.in_view import begin_gizmo, gizmo_has_mouse
 from elemental.ui.log import Kind, Log
 from elemental.ui.observers import Observers
@@ -33,6 +35,7 @@ from elemental.ui.panel.scene import SceneExtent
 from elemental.ui.preferences import Preferences
 from elemental.ui.present import present
 from elemental.ui.sequence_job import SequenceJob
+from elemental.ui.thumbnails import Thumbnails
 from elemental.ui.widgets import Widgets
 from elemental.ui.words import Rect
 from elemental.ui.workspace import Workspace
@@ -91,6 +94,8 @@ class Desk:
         self.started = time.perf_counter()
         self.pages = PageState()
         self.observers = Observers(device)
+        self.images = ImageReader(device.largest_texture_px)
+        self.thumbnails = Thumbnails(device)
         self.history = np.zeros(HISTORY_FRAMES, np.float32)
         """Times from frame to frame, oldest first, ms."""
         self.dialog: FileDialog | None = None
@@ -162,14 +167,7 @@ class Desk:
         laid_out = time.perf_counter()
         if not (self.gui.holds or (has_gui and gizmo_has_mouse())):
             self.document.settle()
-        if self.document.problem is not None:
-            self.say(str(self.document.problem), "error")
-            self.document.problem = None
-        self._act_on_menus()
-        if self.remote is not None:
-            self._take_over_remote(self.remote)
-        if self.applied.take_over(self.document):
-            reopening.reopen(self)
+        self._take_over()
         settled = time.perf_counter()
         if self.job is not None:
             actions.advance_job(self, self.job)  # before this frame, whose memory it may reuse
@@ -193,6 +191,22 @@ class Desk:
         self.layout_ms = 1e3 * (laid_out - began)
         self.gui_ms = 1e3 * (laid_out - began + done - presented)
         self.drawn += 1
+
+    def _take_over(self) -> None:
+        """Bring the renderer up to what was done in the panel, by menus, from elsewhere."""
+        for broken in self.images.deliver():
+            self.say(str(broken), "error")
+        if self.document.problem is not None:
+            self.say(str(self.document.problem), "error")
+            self.document.problem = None
+        self._act_on_menus()
+        if self.remote is not None:
+            self._take_over_remote(self.remote)
+        try:
+            if self.applied.take_over(self.document):
+                reopening.reopen(self)
+        except InputError as error:
+            reopening.refuse(self, error)
 
     @property
     def _has_gui(self) -> bool:
@@ -318,5 +332,7 @@ class Desk:
         if self.job is not None:
             self.job.stop()
         self.observers.release()
+        self.images.release()
+        self.thumbnails.release()
         self.gui.release()
         self.renderer.release()

@@ -8,8 +8,10 @@ from pathlib import Path
 from elemental.core.errors import InputError
 from elemental.core.paths import named_file
 from elemental.frame import OCTREE_KEYS, SHADOW_KEYS, Renderer
-from elemental.scene.model import Scene
+from elemental.gpu.device import GpuMemoryError
+from elemental.scene.model import Material, Scene
 from elemental.scene.named_files import FILE_KEYS
+from elemental.scene.save_parts import MaterialChanges
 from elemental.scene.save_scene import Changes, save_scene
 from elemental.session import Stage, own_settings
 from elemental.settings import SETTINGS, Settings
@@ -37,7 +39,10 @@ class Applied:
         self.state = state
 
     def take_over(self, document: Document) -> bool:
-        """Bring the renderer to the document's state. Returns whether to reopen the scene."""
+        """Bring the renderer to the document's state. Returns whether to reopen the scene.
+
+        Raises InputError for what the device has no room for.
+        """
         before, after = self.state, document.state
         if after is before:
             return False
@@ -55,8 +60,15 @@ class Applied:
             self.renderer.scene.volumes = list(after.volumes)
         for index, (old, new) in enumerate(zip(before.materials, after.materials, strict=True)):
             if not same(old, new):
-                self.renderer.set_material(index, new)
+                self._set_material(index, old, new)
         return False
+
+    def _set_material(self, index: int, old: Material, new: Material) -> None:
+        try:
+            self.renderer.set_material(index, new)
+        except GpuMemoryError as error:
+            self.renderer.set_material(index, old)
+            raise InputError(f"material {new.name}", "", str(error)) from error
 
 
 def reopening_words(settings: Settings, folder: Path) -> list[str]:
@@ -83,7 +95,9 @@ def save(document: Document, scene: Scene, target: Path) -> None:
         volumes=None if same(state.volumes, saved.volumes) else state.volumes,
         lights=None if same(state.lights, saved.lights) else (saved.lights, state.lights),
         materials=(
-            None if same(state.materials, saved.materials) else (saved.materials, state.materials)
+            None
+            if same(state.materials, saved.materials)
+            else MaterialChanges(saved.materials, state.materials, scene.textures, scene.decals)
         ),
     )
     save_scene(scene.path, target, changes, scene.folder)

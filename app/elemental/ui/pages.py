@@ -24,6 +24,7 @@ from elemental.ui.panel.menu import MenuState, menu_bar
 from elemental.ui.panel.scene import Selection, scene_page
 from elemental.ui.panel.sequence import DEFAULT, sequence_page
 from elemental.ui.panel.settings import settings_page
+from elemental.ui.panel.textures import Images
 from elemental.ui.panel.timeline import timeline_page
 from elemental.ui.panel.volumes import VolumeView, volumes_page
 from elemental.ui.sequence_job import SequenceWords
@@ -73,8 +74,7 @@ def pages_of(desk: Desk) -> list[Page]:
         volumes_page(w, state.volumes, desk.document, weights, eye)
 
     def materials(w: Widgets) -> None:
-        folder = desk.stage.scene.path.parent
-        state.material = materials_page(w, state.material, desk.document, folder)
+        state.material = materials_page(w, state.material, desk.document, images_of(desk))
 
     def lights(w: Widgets) -> None:
         state.light = lights_page(w, state.light, desk.document)
@@ -121,6 +121,21 @@ def pages_of(desk: Desk) -> list[Page]:
         Page("Sequence", "bottom", sequence),
         Page("Log", "bottom", log),
     ]
+
+
+def images_of(desk: Desk) -> Images:
+    """The images of the scene's materials, as their rows take them."""
+    textures = desk.stage.scene.textures
+    return Images(
+        textures,
+        desk.stage.scene.path.parent,
+        lambda number: desk.thumbnails.of(number, textures[number]).glo,
+        partial(actions.choose_image, desk),
+        partial(actions.put_image_back, desk),
+        desk.images.is_reading,
+        desk.images.problems.get,
+        frozenset(decal.material for decal in desk.stage.scene.decals),
+    )
 
 
 def menu_of(desk: Desk, w: Widgets) -> None:

@@ -21,6 +21,7 @@ def reload(desk: Desk) -> None:
     except InputError as error:
         desk.say(str(error), "error")
         return
+    desk.images.clear()
     desk.show(stage)
     desk.document = document_of(stage)
     desk.applied = Applied(desk.renderer, desk.document.state)
@@ -36,14 +37,26 @@ def reopen(desk: Desk) -> None:
     try:
         stage = set_stage(desk.words.scene, words, Viewpoint(), desk.renderer.size)
     except InputError as error:
-        desk.say(str(error), "error")
-        document.refuse()
-        desk.applied.state = document.state
-        desk.renderer.set_settings(document.state.settings)
+        refuse(desk, error)
+        return
+    known = desk.stage.scene
+    if [m.name for m in stage.scene.materials] != [m.name for m in document.state.materials]:
+        refuse(desk, InputError(known.path, "", "has other materials now: R reads it again"))
         return
     stage.scene.folder = folder  # the document's names count from there, wherever it was saved
+    # Materials number the textures: those that were chosen since come along.
+    stage.scene.textures = known.textures
+    stage.scene.materials = list(document.state.materials)
     desk.show(replace(stage, settings=settings))
     read = document_of(stage).state
     if len(read.lights) != len(document.state.lights):  # the default sun comes and goes
         document.follow_lights(read.lights)
     desk.applied = Applied(desk.renderer, replace(read, settings=settings))
+
+
+def refuse(desk: Desk, error: InputError) -> None:
+    """Tell why the newest edit can't be had, and take it back."""
+    desk.say(str(error), "error")
+    desk.document.refuse()
+    desk.applied.state = desk.document.state
+    desk.renderer.set_settings(desk.document.state.settings)

@@ -7,6 +7,7 @@ does: by what it says.
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -37,13 +38,23 @@ class Edit(NamedTuple):
     gesture: Hashable = None
 
 
+class Browsing(NamedTuple):
+    """A row that asks for a file: its page and name, its setting and value."""
+
+    key: str
+    setting: Setting
+    value: str
+    folder: Path | None
+    """From which the value counts; None: that of the settings' names."""
+
+
 class Widgets(Words):
     """ImGui's widgets in the panel's manner."""
 
     def __init__(self, fonts: Fonts, records: bool = False) -> None:
         super().__init__(fonts, records)
-        self.browsing: tuple[str, Setting, str] | None = None
-        """A row that asks for a file: its page and name, its setting and value."""
+        self.browsing: Browsing | None = None
+        """A row that asks for a file."""
         self.browsed: dict[str, str] = {}
         """Files that were chosen for rows, until these take them."""
         self._typed: dict[int, str] = {}
@@ -247,16 +258,18 @@ class Widgets(Words):
             imgui.end_popup()
         return edit
 
-    def file(self, name: str, setting: Setting, value: str) -> Edit | None:
-        """A file's name to type, and a button to look for it."""
+    def file(
+        self, name: str, setting: Setting, value: str, hint: str = "", folder: Path | None = None
+    ) -> Edit | None:
+        """A file's name to type, and a button to look for it; names count from ``folder``."""
         spacing = imgui.get_style().item_inner_spacing.x
         button = imgui.get_font_size() + 2.0 * imgui.get_style().frame_padding.x
         imgui.set_next_item_width(imgui.calc_item_width() - button - spacing)
-        edit = self.typed(name, value)
+        edit = self.typed(name, value, hint)
         imgui.same_line(0.0, spacing)
         key = f"{self.page}/{name}"
         if self.button(icons.FOLDER, f"browse {name}", help="look for a file"):
-            self.browsing = (key, setting, value)
+            self.browsing = Browsing(key, setting, value, folder)
         if key in self.browsed:
             edit = Edit(self.browsed.pop(key))
         return edit

@@ -44,7 +44,11 @@ class Words:
 
     def hint(self, text: str) -> None:
         """A paragraph that explains, wrapped."""
-        imgui.push_style_color(imgui.Col_.text.value, theme.color(theme.MUTED))
+        self.paragraph(text, theme.MUTED)
+
+    def paragraph(self, text: str, rgb: Rgb) -> None:
+        """Text of several lines, wrapped."""
+        imgui.push_style_color(imgui.Col_.text.value, theme.color(rgb))
         imgui.push_text_wrap_pos(0.0)
         imgui.text_unformatted(text)
         imgui.pop_text_wrap_pos()

@@ -17,7 +17,7 @@ from elemental.scene.definitions import (
     find_definition,
     read_definition,
 )
-from elemental.scene.materials import Material, TextureSlot
+from elemental.scene.materials import Material
 
 HEADING = """/*
 help = "rust over metal"
@@ -109,7 +109,7 @@ def test_values_that_a_new_definition_does_not_know_are_dropped(tmp_path: Path) 
     changed = HEADING.replace('"int", default = 3, min = 1, max = 9', '"bool", default = true')
     new = read_definition(write(tmp_path, changed, "new"))
     worn = Material("m", definition=old).with_value("steps", 5).with_value("amount", 0.25)
-    worn = worn.with_texture("mask", TextureSlot(3)).with_definition(new)
+    worn = worn.with_image("mask", 3).with_definition(new)
     assert worn.values == {"amount": 0.25}
     assert worn.textures.keys() == {"mask"}
     assert worn.value("steps") is True

@@ -16,13 +16,17 @@ from hypothesis import strategies as st
 
 from cli.small_scene import corner
 from elemental.core.errors import InputError
+from elemental.core.images import write_png
 from elemental.core.paths import content_root
 from elemental.scene.defaults import default_sun
 from elemental.scene.definitions import find_definition
 from elemental.scene.lights import Light
 from elemental.scene.load import load_scene
+from elemental.scene.materials import Texture
+from elemental.scene.save_parts import MaterialChanges
 from elemental.scene.save_scene import Changes, save_scene
 from elemental.scene.scene_file import flat_settings
+from elemental.scene.scene_materials import read_texture
 from elemental.ui.document import same
 
 MODELS = '[[models]]\nfile = "m/a.glb"  # the house\n'
@@ -158,7 +162,7 @@ def test_lights_and_materials_come_back_as_they_were_left(tmp_path: Path) -> Non
     ]
     for _ in range(2):  # the second time into its own tables
         save_scene(path, path, Changes(
-            lights=(scene.lights, lights), materials=(scene.materials, materials)
+            lights=(scene.lights, lights), materials=MaterialChanges(scene.materials, materials)
         ))  # fmt: skip
     again = load_scene(path, default_lights=False)
     for wanted, got in zip((*lights, *materials), (*again.lights, *again.materials), strict=True):
@@ -168,6 +172,74 @@ def test_lights_and_materials_come_back_as_they_were_left(tmp_path: Path) -> Non
             assert math.isclose(wanted.inner_angle, got.inner_angle, rel_tol=1e-6)
     for comment in ("# ours", "# all alike"):
         assert comment in path.read_text()
+
+
+ARTIST = """/*
+standard = true
+[parameters]
+mask = { type = "texture", default = "grey" }
+*/
+void material(inout Surface s, MaterialInput m, Parameters p) { s = standard_surface(m); }
+"""
+
+
+def test_images_and_shaders_are_named_from_the_scene(tmp_path: Path) -> None:
+    """Also one folder up; the model's own image comes back by leaving the name out."""
+    (tmp_path / "scenes").mkdir()
+    (tmp_path / "corner.gltf").write_text(json.dumps(corner()))
+    (tmp_path / "rust.glsl").write_text(ARTIST)
+    write_png(tmp_path / "dots.png", np.full((2, 2, 3), 99, np.uint8))
+    path = tmp_path / "scenes" / "a.toml"
+    path.write_text('[[models]]\nfile = "../corner.gltf"\n')
+    scene = load_scene(path, default_lights=False)
+    own = Texture("own", np.zeros((1, 1, 4), np.uint8))
+    textures = [own, read_texture(tmp_path / "dots.png")]
+    first, second, _ = bare = scene.materials
+    rust = find_definition("../rust.glsl", path.parent, path, "shader")
+    worn = [
+        replace(first, alpha_mode="mask", double_sided=True).with_image("normal_texture", 1),
+        second.with_definition(rust).with_image("mask", 1),
+        bare[2],
+    ]
+    save_scene(path, path, Changes(materials=MaterialChanges(bare, worn, textures)))
+    again = load_scene(path, default_lights=False)
+    assert [m.definition for m in again.materials] == [m.definition for m in worn]
+    assert (again.materials[0].alpha_mode, again.materials[0].double_sided) == ("mask", True)
+    for material, name in ((again.materials[0], "normal_texture"), (again.materials[1], "mask")):
+        slot = material.texture(name)
+        assert slot is not None
+        assert again.textures[slot.texture].name == "dots"
+    assert '"../dots.png"' in path.read_text()
+    back = [worn[0].with_image("normal_texture", 0), *worn[1:]]
+    save_scene(path, path, Changes(materials=MaterialChanges(worn, back, textures)))
+    assert load_scene(path, default_lights=False).materials[0].normal_texture is None
+    with pytest.raises(InputError, match="materials"):
+        save_scene(path, path, Changes(materials=MaterialChanges(worn, back, textures)))
+
+
+def test_what_decals_project_is_saved_with_them(tmp_path: Path) -> None:
+    """A table of materials can't name it: a scene with one would not open any more."""
+    (tmp_path / "corner.gltf").write_text(json.dumps(corner()))
+    write_png(tmp_path / "dots.png", np.full((2, 2, 3), 99, np.uint8))
+    path = tmp_path / "a.toml"
+    sticker = (
+        "[[decals]]\nposition = [0, 0, 0]\ndirection = [0, -1, 0]\n"
+        "up = [0, 0, -1]\nsize = [1, 1, 1]\n"
+    )
+    path.write_text(
+        f'[[models]]\nfile = "corner.gltf"\n{sticker}parameters = {{ roughness = 0.5 }}\n'
+        f"{sticker}{sticker}parameters = {{ roughness = 0.5 }}\n"
+    )
+    scene = load_scene(path, default_lights=False)
+    assert [decal.material for decal in scene.decals] == [3, 4, 3]
+    textures = [read_texture(tmp_path / "dots.png")]
+    worn = list(scene.materials)
+    worn[3] = worn[3].with_value("metallic", 0.25).with_image("base_color_texture", 0)
+    changes = MaterialChanges(scene.materials, worn, textures, scene.decals)
+    save_scene(path, path, Changes(materials=changes))
+    again = load_scene(path, default_lights=False)
+    assert [decal.material for decal in again.decals] == [3, 4, 3]
+    assert same(again.materials, worn)
 
 
 def test_the_default_sun_is_refused(tmp_path: Path) -> None:

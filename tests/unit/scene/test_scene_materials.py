@@ -11,6 +11,7 @@ from cli.process import assert_refused, elemental
 from cli.small_scene import write_corner
 from elemental.core.images import write_png
 from elemental.scene.load import load_scene
+from elemental.scene.materials import Material, TextureSlot
 from elemental.scene.model import Scene
 
 RUST = """/*
@@ -66,6 +67,30 @@ def test_an_image_is_read_once_and_may_stand_for_gltf_s_own(tmp_path: Path) -> N
     slot = scene.materials[0].base_color_texture
     assert slot is not None
     assert scene.textures[slot.texture].name == "dots"
+    assert scene.textures[slot.texture].file == tmp_path / "dots.png"
+
+
+def test_a_plain_texture_takes_the_image_away(tmp_path: Path) -> None:
+    image = 'parameters = { mask = "dots.png", base_color_texture = "dots.png" }\n'
+    plain = 'parameters = { mask = "black", base_color_texture = "white" }\n'
+    head = '[[materials]]\nname = "*"\n'
+    tables = f'{head}shader = "rust.glsl"\n{image}{head}{plain}'
+    material = load(tmp_path, tables).materials[0]
+    assert material.base_color_texture is None
+    assert not material.textures
+    assert material.value("mask") == "black"
+
+
+def test_an_image_lies_as_the_one_that_it_replaces() -> None:
+    turned = np.array([[0, 2, 0], [-1, 0, 1]], np.float32)
+    before = Material("m", normal_texture=TextureSlot(3, 1, turned))
+    slot = before.with_image("normal_texture", 5).normal_texture
+    assert slot is not None
+    assert (slot.texture, slot.uv_set) == (5, 1)
+    np.testing.assert_array_equal(slot.uv_from_uv, turned)
+    assert before.with_image("base_color_texture", 5).base_color_texture == TextureSlot(
+        5, 0, pytest.approx(np.eye(2, 3))
+    )
 
 
 @pytest.mark.parametrize(

@@ -2,24 +2,32 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from dataclasses import replace
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any
 
 from imgui_bundle import imgui
 
-from elemental.scene.definitions import definition_names, find_definition
+from elemental.scene.definitions import builtin, definition_names, read_definition
 from elemental.scene.materials import Material
 from elemental.scene.parameters import LARGEST, Parameter
 from elemental.settings import Setting
 from elemental.settings.setting import Kind
-from elemental.ui import icons, theme
+from elemental.ui import icons
 from elemental.ui.document import Document
+from elemental.ui.panel.textures import Images, texture_row
 from elemental.ui.rows import property_row, vector_row
 from elemental.ui.widgets import Widgets
 
 KINDS: dict[str, Kind] = {"float": "float", "int": "int", "bool": "bool", "color": "color"}
 LIST_ROWS = 6
+DRAW_STATES = (
+    Setting("alpha_mode", "choice", "opaque", "what opacity means: nothing, cut-outs, or glass",
+            choices=("opaque", "mask", "blend")),
+    Setting("double_sided", "bool", False, "whether its backs show"),
+)  # fmt: skip
+"""Of every material but what decals project."""
 
 
 @lru_cache(maxsize=512)
@@ -37,8 +45,8 @@ def setting_of(parameter: Parameter) -> Setting:
     )
 
 
-def materials_page(w: Widgets, chosen: int, document: Document, folder: Path) -> int:
-    """Draw the page; ``folder``: where the scene's own definitions are. Returns what is chosen."""
+def materials_page(w: Widgets, chosen: int, document: Document, images: Images) -> int:
+    """Draw the page. Returns what is chosen."""
     materials = document.state.materials
     chosen = min(chosen, len(materials) - 1)
     height = LIST_ROWS * imgui.get_text_line_height_with_spacing()
@@ -55,22 +63,49 @@ def materials_page(w: Widgets, chosen: int, document: Document, folder: Path) ->
     before = document.saved.materials
     saved = before[chosen] if chosen < len(before) else material
     if imgui.begin_child("parameters"):
-        w.row("Kind", "which shader makes its surface")
-        names = definition_names()
-        kind = w.choose("kind", material.definition.name, names)
+        kinds = _kinds(document)
+        w.row("Shader", "which shader makes its surface")
+        kind = w.choose("kind", material.definition.name, list(kinds))
         w.hint(material.definition.help)
         if kind != material.definition.name:
-
-            def dress() -> None:
-                definition = find_definition(kind, folder, folder, "shader")
-                document.set_material(chosen, material.with_definition(definition))
-
-            document.attempt(dress)
+            document.attempt(partial(_dress, document, chosen, material, kind, kinds[kind]))
         else:
             for parameter in material.definition.parameters:
-                _row(w, document, chosen, material, saved, parameter)
+                if parameter.kind == "texture":
+                    texture_row(w, images, chosen, material, saved, parameter)
+                else:
+                    _row(w, document, chosen, material, saved, parameter)
+            if chosen not in images.projected:
+                _draw_states(w, document, chosen, material, saved)
     imgui.end_child()
     return chosen
+
+
+def _draw_states(
+    w: Widgets, document: Document, index: int, material: Material, saved: Material
+) -> None:
+    """How its surfaces are drawn, whatever its shader."""
+    for state in DRAW_STATES:
+        value, before = getattr(material, state.key), getattr(saved, state.key)
+        label = state.key.replace("_", " ").capitalize()
+        edit = property_row(w, state.key, label, state, value, before)
+        if edit is not None:
+            document.set_material(index, replace(material, **{state.key: edit.value}))
+
+
+def _kinds(document: Document) -> dict[str, Path | None]:
+    """Shaders to choose from, by name: our own, and files that the scene's materials have."""
+    kinds: dict[str, Path | None] = dict.fromkeys(definition_names())
+    for material in (*document.saved.materials, *document.state.materials):
+        kinds.setdefault(material.definition.name, material.definition.file)
+    return kinds
+
+
+def _dress(
+    document: Document, index: int, material: Material, kind: str, file: Path | None
+) -> None:
+    definition = builtin(kind) if file is None else read_definition(file)
+    document.set_material(index, material.with_definition(definition))
 
 
 def _row(
@@ -82,11 +117,6 @@ def _row(
     parameter: Parameter,
 ) -> None:
     name, label = parameter.name, parameter.name.replace("_", " ").capitalize()
-    if parameter.kind == "texture":
-        slot = getattr(material, name, None) or material.textures.get(name)
-        w.row(label, parameter.help)
-        w.text("an image" if slot is not None else str(parameter.default), theme.MUTED)
-        return
     value = material.value(name)
     default: Any = parameter.default
     if material.definition == saved.definition:
