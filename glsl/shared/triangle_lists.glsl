@@ -1,4 +1,5 @@
 // The triangles that voxelization has to draw: see voxel/select_triangles.comp.
+#include "shared/draw_command.glsl"
 
 const uint TRIANGLE_GROUP = 64u;  // triangles of a chunk at most, threads a group over chunks
 
@@ -9,15 +10,6 @@ struct TriangleChunk {
     uint base_vertex;
     uint instance;
     uint draw;         // whose list takes them: a draw for each instance
-};
-
-// DrawElementsIndirectCommand (OpenGL 4.3 core, section 10.3.10).
-struct DrawCommand {
-    uint count;
-    uint instance_count;
-    uint first_index;
-    uint base_vertex;
-    uint base_instance;
 };
 
 // Which chunks a pass lists: all, or those of what moves or of what does not.

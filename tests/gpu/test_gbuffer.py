@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from elemental.gpu.formats import D24S8, RGB10_A2, RGBA8, RGBA16F
-from elemental.passes.culling import Culling
 from elemental.scene.model import Texture, TextureSlot
 from gpu.rig import IDENTITY, UNLIT, MakeRig, Rig, at, camera, material, mesh, read, scene, vector
 from shapes import box, quad, sphere
@@ -185,30 +184,6 @@ def test_instances_of_many_materials_land_where_they_belong(rig: MakeRig) -> Non
         np.testing.assert_allclose(
             stored[near], np.tile(colors[owner, :3], (near.sum(), 1)), atol=6e-3
         )
-
-
-def test_culling_never_leaves_out_what_is_seen(
-    rig: MakeRig, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Cameras among boxes, with and without culling: the same depth to the bit."""
-    rng = np.random.default_rng(9)
-    parts = [(mesh(box((0.5, 2.5, 0.5))), at(*rng.uniform(-4, 4, 3))) for _ in range(60)]
-    world = scene(*parts)
-    for turn in range(4):
-        angle = turn * np.pi / 2 + 0.3
-        pose = camera(vector(0, 0, 0), vector(np.cos(angle), 0.2, np.sin(angle)), fov_y=0.7)
-        depths, seen = [], []
-        for everything in (False, True):
-            view = rig(world, pose)
-            if everything:
-                monkeypatch.setattr(Culling, "visible", lambda _, m: np.ones(60, bool))
-            g, block, gb = view.begin()
-            depths.append(read(g, gb.depth))
-            matrix = np.asarray(block["clip_from_world"]).T
-            seen.append(Culling.visible(view.gpu._culling, matrix).mean())
-        monkeypatch.undo()
-        np.testing.assert_array_equal(depths[0], depths[1])
-        assert seen[0] < 0.6
 
 
 @pytest.mark.parametrize("uv_set", [0, 1])

@@ -78,23 +78,24 @@ def test_only_what_changed_is_uploaded(on_device: Any, monkeypatch: pytest.Monke
     gpu = on_device(world)
     numbers = np.arange(4, 10)
     worlds = np.array([at(3 * n, 0, 0) for n in numbers])
-    written: list[tuple[int, int]] = []
-    monkeypatch.setattr(
-        Buffer, "write", lambda self, values, offset=0: written.append((len(values), offset))
-    )
+    written: list[tuple[str, int, int]] = []
 
-    def update() -> list[tuple[int, int]]:
+    def note(buffer: Buffer, values: Any, offset: int = 0) -> None:
+        written.append((buffer.name, len(values), offset // values.itemsize))
+
+    monkeypatch.setattr(Buffer, "write", note)
+
+    def update() -> list[tuple[str, int, int]]:
         written.clear()
         gpu.update(pose_of(instances=numbers, world_from_local=worlds, visible=np.ones(6, bool)))
-        size = gpu._table.rows.itemsize
-        return [(count, offset // size) for count, offset in written]
+        return written
 
     assert update() == []
     worlds = worlds.copy()
     worlds[[1, 3], 1, 3] = 1.0
-    assert update() == [(3, 5)]
+    assert update() == [("scene.instances", 3, 5), ("scene.boxes", 3, 5)]
     assert [change.instance for change in gpu.changes] == [5, 7]
-    assert update() == [(3, 5)]  # they come to rest
+    assert update() == [("scene.instances", 3, 5)]  # they come to rest
     assert gpu.changes == []
     assert update() == []
 

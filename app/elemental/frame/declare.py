@@ -102,7 +102,7 @@ def declare_frame(g: Graph, systems: Systems, request: Request) -> TextureHandle
     if name in VOXEL_VIEWS and octree is not None:
         return voxel_view(g, view, octree, size, name, s["voxels.level"], s["voxels.side"])
 
-    gb = draw_gbuffer(g, view, meshes, size)
+    gb = draw_gbuffer(g, view, meshes, size, s["gbuffer.culling"])
     systems.decals.draw(g, view, gb)
     if name in CHANNELS:
         return surface_view(g, view, gb, name)

@@ -25,6 +25,7 @@ from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.shadow import ShadowMaps
 from elemental.passes.shadow_plan import ShadowSettings
 from elemental.passes.sky import Sky
+from elemental.passes.view_draws import CullCounters
 from elemental.passes.voxel import sizing
 from elemental.passes.voxel.grid import Grid
 from elemental.passes.voxel.lighting import VoxelLighting
@@ -51,14 +52,15 @@ class Frame:
     image: Texture
     is_linear: bool
     lights: Mapping[str, int]
+    culled: CullCounters
     voxels: VoxelLighting | None
     specular: SpecularCounters
     sprites: SpriteCounters
 
     @property
     def counters(self) -> dict[str, int]:
-        """Shadow maps, and what the GPU has reported so far: complete after Device.finish."""
-        counted = {**self.lights, **self.sprites.counters()}
+        """Shadow maps, and what the GPU has told of so far: complete after Device.finish."""
+        counted = {**self.lights, **self.culled.counters(), **self.sprites.counters()}
         if self.voxels is None:
             return counted
         return {**counted, **self.voxels.counters(), **self.specular.counters()}
@@ -200,8 +202,9 @@ class Renderer:
             self.looker(g)
         g.execute()
         assert image.physical is not None, "a kept handle has a texture once its graph has run"
-        counted = (self._shadows.counts, systems.voxels, self._specular, self._post.sprites)
-        return Frame(image.physical, view in LINEAR_VIEWS, *counted)
+        culled = self._meshes.in_view.counters
+        counted = (systems.voxels, self._specular, self._post.sprites)
+        return Frame(image.physical, view in LINEAR_VIEWS, self._shadows.counts, culled, *counted)
 
     def _systems(self, view: str, time_s: float) -> Systems:
         """What a frame's passes work on; voxels only where its view asks for indirect light."""

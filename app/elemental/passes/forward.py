@@ -19,7 +19,7 @@ from elemental.gpu.refs import Ref, Sampled, TextureHandle
 from elemental.gpu.shaders import Raster
 from elemental.gpu.state import RasterState
 from elemental.passes.behind import grab_behind
-from elemental.passes.gbuffer import VERT, VIEWER, GBuffer
+from elemental.passes.gbuffer import VERT, GBuffer
 from elemental.passes.light_cells import ALL_LIGHTS, NO_CELLS, VIEW_CELLS, LightCells
 from elemental.passes.material_pack import ALL_SLOTS
 from elemental.passes.material_table import material_shader
@@ -153,7 +153,7 @@ def _draw(
     params: Mapping[str, Block],
 ) -> None:
     def draw(enc: Encoder) -> None:
-        scene.draw_sorted(enc, batches, VIEWER)
+        scene.draw_sorted(enc, batches)
 
     g.raster(
         shader,

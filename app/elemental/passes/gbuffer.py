@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from elemental.core.layout import Block
 from elemental.gpu.encode import Encoder
 from elemental.gpu.formats import D24S8, RGB10_A2, RGBA8, RGBA16F
@@ -16,12 +14,11 @@ from elemental.gpu.shaders import Raster
 from elemental.gpu.state import RasterState, Stencil
 from elemental.passes.material_table import material_shader
 from elemental.passes.scene_gpu import GpuScene
-from elemental.passes.scene_pack import SOLID, Batch
+from elemental.passes.scene_pack import OPAQUE, SOLID, Batch
+from elemental.passes.view_draws import CAMERA, OCCLUDERS
 
 VERT, FRAG = "gbuffer/gbuffer.vert.glsl", "gbuffer/gbuffer.frag.glsl"
 STATE = RasterState(cull="back", depth_test="lequal")
-VIEWER = "camera"
-"""Whom GpuScene.look culls for here."""
 CLEAR = (0.0, 0.0, 0.0, 0.0)
 REFUSES_DECALS = 1
 """Bit of the stencil buffer, set where the nearest surface is of an instance without decals."""
@@ -36,6 +33,7 @@ MASKED_STATES = {
 MASKED = {"ALPHA_MASK": 1}
 EMPTY = Raster(VERT, FRAG)
 """Clears the targets where nothing is drawn."""
+DEPTH = Raster("gbuffer/depth.vert.glsl", "shadow/depth.frag.glsl")
 
 
 @dataclass(frozen=True)
@@ -65,8 +63,18 @@ class GBuffer:
         }
 
 
-def draw_gbuffer(g: Graph, view: Block, scene: GpuScene, size: tuple[int, int]) -> GBuffer:
-    """Rasterize every opaque and masked surface. `view`: the packed block View; size in px."""
+def draw_gbuffer(
+    g: Graph,
+    view: Block,
+    scene: GpuScene,
+    size: tuple[int, int],
+    culling: str = "occlusion",
+) -> GBuffer:
+    """Rasterize every opaque and masked surface.
+
+    `view`: the packed block View; size in px; culling: one of view_draws.CULLING, what is not even
+    sent to the rasterizer.
+    """
     gb = GBuffer(
         depth=g.texture("gbuffer.depth", size=size, format=D24S8),
         scene_color=g.texture("scene_color", size=size, format=RGBA16F),
@@ -75,7 +83,11 @@ def draw_gbuffer(g: Graph, view: Block, scene: GpuScene, size: tuple[int, int]) 
         c=g.texture("gbuffer.c", size=size, format=RGBA8),
         d=g.texture("gbuffer.d", size=size, format=RGBA8),
     )
-    scene.look(VIEWER, np.asarray(view["clip_from_world"]).T)
+    scene.in_view.begin(g, view, size, scene.version, culling)
+    hides = scene.in_view.hides
+    if hides:
+        _draw_occluders(g, view, scene, gb.depth)
+        scene.in_view.finish(g, view, gb.depth)
     groups: dict[tuple[Raster, bool], list[Batch]] = defaultdict(list)
     for batch in scene.batches(SOLID):
         defines = MASKED if batch.alpha_mode == "mask" else None
@@ -86,7 +98,7 @@ def draw_gbuffer(g: Graph, view: Block, scene: GpuScene, size: tuple[int, int]) 
         mask = batches[0].texture_mask if batches else 0
 
         def draw(enc: Encoder, batches: list[Batch] = batches, mask: int = mask) -> None:
-            scene.draw(enc, batches, texture_mask=mask, seen_by=VIEWER)
+            scene.draw(enc, batches, texture_mask=mask, seen_by=CAMERA)
 
         g.raster(
             shader,
@@ -98,11 +110,33 @@ def draw_gbuffer(g: Graph, view: Block, scene: GpuScene, size: tuple[int, int]) 
             params={"View": view, **scene.params()},
             state=MASKED_STATES[receives] if masked else STATE,
             clear_color=CLEAR if number == 0 else None,
-            clear_depth=1.0 if number == 0 else None,
-            clear_stencil=0 if number == 0 else None,
+            clear_depth=1.0 if number == 0 and not hides else None,
+            clear_stencil=0 if number == 0 and not hides else None,
             draw=draw,
+            uses=scene.uses(CAMERA),
         )
     return gb
+
+
+def _draw_occluders(g: Graph, view: Block, scene: GpuScene, depth: TextureHandle) -> None:
+    """The depth of what was seen before, into an empty buffer. The surfaces are then drawn on top,
+    equally near: of those that are hidden none is shaded."""
+
+    def draw(enc: Encoder) -> None:
+        scene.draw_positions(enc, OPAQUE, seen_by=OCCLUDERS, cull=True)
+
+    g.raster(
+        DEPTH,
+        "gbuffer.depth",
+        depth=depth,
+        reads={"Instances": scene.instances},
+        params={"View": view},
+        state=STATE,
+        clear_depth=1.0,
+        clear_stencil=0,
+        draw=draw,
+        uses=scene.uses(OCCLUDERS),
+    )
 
 
 def _name(batches: list[Batch]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
+from itertools import groupby
 
 import numpy as np
 
@@ -16,9 +17,10 @@ from elemental.passes.material_pack import ALL_SLOTS, CATEGORIES, SLOTS
 from elemental.passes.material_textures import MaterialTextures
 from elemental.passes.placed import Placed
 from elemental.passes.scene_geometry import SceneGeometry
-from elemental.passes.scene_pack import BLEND, OPAQUE, Array, Batch
+from elemental.passes.scene_pack import BLEND, OPAQUE, SOLID, Array, Batch
 from elemental.passes.triangle_lists import TriangleLists
 from elemental.passes.triangle_order import TriangleOrder
+from elemental.passes.view_draws import CAMERA, OCCLUDERS, ViewDraws
 from elemental.scene.model import AlphaMode, Scene
 
 INSTANCE_FORMAT = "16f 16f 4u 64x/i"
@@ -29,8 +31,8 @@ INSTANCE_NAMES = ("a_world_from_local", "a_normal_from_local", "a_instance_words
 class SceneDraws:
     """The draws of a scene whose geometry, instances and textures a GpuScene holds.
 
-    `lists` is what voxelization draws; `dynamic` (N,) bool tells which instances stand in batches
-    of their own.
+    `in_view` is what the camera sees, `lists` what voxelization draws; `dynamic` (N,) bool tells
+    which instances stand in batches of their own.
     """
 
     instances: Buffer
@@ -55,6 +57,8 @@ class SceneDraws:
         self._commands, self._order = commands, numbers
         self._everything = self._place("everything")
         self._seen_by: dict[str, Placed] = {}
+        solid = commands[: sum(batch.count for batch in self.batches(SOLID))]
+        self.in_view = ViewDraws(self._device, table, self._everything, solid, self._place)
         self.lists = TriangleLists(
             self._device, commands, numbers, self.geometry.indices, self.dynamic
         )
@@ -78,6 +82,7 @@ class SceneDraws:
     def _release_order(self) -> None:
         for placed in (self._everything, *self._seen_by.values()):
             placed.release()
+        self.in_view.release()
         self._listed.release()
         self._sorted.release()
         self.lists.release()
@@ -93,7 +98,16 @@ class SceneDraws:
             self._seen_by[viewer].order.write(order)
 
     def _placed(self, viewer: str | None) -> Placed:
+        if viewer == CAMERA:
+            return self.in_view.visible
+        if viewer == OCCLUDERS:
+            return self.in_view.occluders
         return self._everything if viewer is None else self._seen_by[viewer]
+
+    def uses(self, viewer: str) -> tuple[Buffer, Buffer]:
+        """What a pass that draws what this viewer sees names in its ``uses``."""
+        placed = self._placed(viewer)
+        return placed.commands, placed.order
 
     def batches(
         self, alpha_modes: Collection[AlphaMode], dynamic: bool | None = None
@@ -136,7 +150,8 @@ class SceneDraws:
         """Draw batches with every attribute.
 
         `texture_mask`: the shader's MATERIAL_TEXTURES. `cull` hides the back faces of single-sided
-        materials; without it the pass's state stays. `seen_by`: a viewer given to `look`.
+        materials; without it the pass's state stays. `seen_by`: a viewer given to `look`, or one
+        of `in_view`.
         """
         placed = self._placed(seen_by)
         for batch in self.textured(encoder, batches, texture_mask):
@@ -144,13 +159,13 @@ class SceneDraws:
                 encoder.set(cull="none" if batch.double_sided else "back")
             encoder.draw_indirect(placed.vertices, placed.commands, batch.count, batch.first)
 
-    def draw_sorted(self, encoder: Encoder, batches: Iterable[Batch], seen_by: str) -> None:
+    def draw_sorted(self, encoder: Encoder, batches: Iterable[Batch]) -> None:
         """Draw batches of `back_to_front`, culling left as it is."""
-        placed = self._placed(seen_by)
         for batch in self.textured(encoder, batches):
             if batch.instance in self._sorted:
                 self._sorted.draw(encoder, batch.instance)
             else:
+                placed = self._everything
                 encoder.draw_indirect(placed.vertices, placed.commands, batch.count, batch.first)
 
     def draw_listed(
@@ -191,14 +206,18 @@ class SceneDraws:
         *,
         dynamic: bool | None = None,
         seen_by: str | None = None,
+        cull: bool = False,
     ) -> None:
-        """Draw with the attributes a_position and a_instance only, culling left as it is.
+        """Draw with the attributes a_position and a_instance only.
 
-        `dynamic` as for `batches`.
+        `dynamic` as for `batches`, `seen_by` and `cull` as for `draw`.
         """
         placed = self._placed(seen_by)
         for mode in CATEGORIES:
             batches = self.batches((mode,), dynamic) if mode in alpha_modes else []
-            if batches:
-                count, first = sum(batch.count for batch in batches), batches[0].first
+            for double_sided, run in groupby(batches, lambda batch: cull and batch.double_sided):
+                if cull:
+                    encoder.set(cull="none" if double_sided else "back")
+                drawn = list(run)
+                count, first = sum(batch.count for batch in drawn), drawn[0].first
                 encoder.draw_indirect(placed.positions_only, placed.commands, count, first)

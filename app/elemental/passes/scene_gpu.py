@@ -102,6 +102,7 @@ class GpuScene(SceneDraws):
                 self.instances.write(table, rows.start * table.itemsize)
             if moved:
                 self._culling.moved()
+                self.in_view.moved(rows)
                 elsewhere = {change.instance for change in moved}
                 self.geometry.mark_moved(elsewhere)
                 stood = [change for change in self.changes if change.instance not in elsewhere]

@@ -22,6 +22,12 @@ SURFACE_TABLE = (
     Setting("ao.fade_radius", "float", 50.0, "length before that over which it fades",
             unit="m", lo=0, hi=200, volume=True),
     Setting(
+        "gbuffer.culling", "choice", "occlusion",
+        "what is left out of the draws: nothing, what is outside the view, what others hide too; "
+        "the picture is the same",
+        choices=("none", "frustum", "occlusion"), source="[Greene93] [Wihlidal16]",
+    ),
+    Setting(
         "gbuffer.blur", "bool", True,
         "average normals and ambient occlusion over five pixels; broaden highlights to match",
         source="[Mittring12] [Toksvig05]",

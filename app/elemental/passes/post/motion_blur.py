@@ -19,10 +19,10 @@ from elemental.gpu.graph import Graph
 from elemental.gpu.refs import AnyTexture, TextureHandle
 from elemental.gpu.shaders import Raster
 from elemental.gpu.state import RasterState
-from elemental.passes.gbuffer import VIEWER
 from elemental.passes.post.scale import TRIANGLE
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.scene_pack import SOLID
+from elemental.passes.view_draws import CAMERA as SEEN
 
 CAMERA = Raster(TRIANGLE, "post/motion_camera.frag.glsl")
 OBJECTS = Raster("post/motion_objects.vert.glsl", "post/motion_objects.frag.glsl")
@@ -62,7 +62,7 @@ def motion_blur(
         moving = scene
 
         def draw(enc: Encoder) -> None:
-            moving.draw_positions(enc, SOLID, dynamic=True, seen_by=VIEWER)
+            moving.draw_positions(enc, SOLID, dynamic=True, seen_by=SEEN)
 
         g.raster(
             OBJECTS,
@@ -72,6 +72,7 @@ def motion_blur(
             params=params,
             state=VISIBLE,
             draw=draw,
+            uses=scene.uses(SEEN),
         )
     return _blur(g, picture, motion, block)
 
