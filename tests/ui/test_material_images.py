@@ -109,7 +109,7 @@ def test_an_image_is_looked_for(hands: Hands, scene_file: Path, blue: Path) -> N
     [
         ("nothing.png", None, "does not exist"),
         ("text.png", b"no image", "not a PNG, JPEG or WebP image"),
-        (".", None, "is not a file"),
+        (".", None, "is a folder"),
     ],
 )
 def test_a_bad_file_is_told_and_changes_nothing(
@@ -123,7 +123,7 @@ def test_a_bad_file_is_told_and_changes_nothing(
     assert robot.sees(f"problem {ROW}")
     said = robot.desk.log.entries[-1]
     assert said.kind == "error"
-    assert str(scene_file.parent / name) in said.text
+    assert str(scene_file.parent) in said.text
     assert reason in said.text
     robot.desk.images.largest_px = 4
     write_png(scene_file.parent / "wide.png", np.zeros((1, 8, 3), np.uint8))
