@@ -12,8 +12,7 @@ vec2 decal_uv_dy = vec2(0.0);
 #include "lib/view.glsl"
 #include "shared/decal.glsl"
 
-uniform sampler2D u_depth;
-uniform sampler2D u_receivers;  // xyz: normals before any decal, a: decal mask
+uniform usampler2D u_receivers;  // before any decal
 
 flat in uint v_decal;
 
@@ -39,14 +38,14 @@ void set_uv_steps(vec2 uv, vec3 p_ws, vec3 normal_ws, mat3 decal_from_world) {
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec4 receiver = texelFetch(u_receivers, pixel, 0);
+    Receiver receiver = receiver_unpack(texelFetch(u_receivers, pixel, 0).xy);
     vec2 uv = gl_FragCoord.xy * u_view.viewport_px.zw;
-    vec3 p_ws = position_ws_at(uv, texelFetch(u_depth, pixel, 0).r);
+    vec3 p_ws = position_ws_at(uv, receiver.depth);
     mat4 decal_from_world = decals[v_decal].decal_from_world;
     mat4 world_from_decal = decals[v_decal].world_from_decal;
     vec3 local = (decal_from_world * vec4(p_ws, 1.0)).xyz;
-    vec3 normal_ws = receiver.xyz;
-    float opacity = receiver.a * decals[v_decal].opacity;
+    vec3 normal_ws = normal10_decode(receiver.normal_code);
+    float opacity = receiver.mask * decals[v_decal].opacity;
     opacity *= decal_fade(normal_ws, normalize(world_from_decal[2].xyz), decals[v_decal].fade_end,
                           decals[v_decal].fade_scale);
     if (any(greaterThan(abs(local), vec3(0.5))) || opacity <= 0.0) discard;

@@ -10,5 +10,4 @@ void main() {
     v_decal = a_decal;
     vec3 corner = vec3(gl_VertexID & 1, (gl_VertexID >> 1) & 1, gl_VertexID >> 2) - 0.5;
     gl_Position = u_view.clip_from_world * (decals[a_decal].world_from_decal * vec4(corner, 1.0));
-    gl_Position.z = min(gl_Position.z, gl_Position.w);  // the far plane cuts none off
 }

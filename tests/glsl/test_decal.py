@@ -35,3 +35,25 @@ def test_a_step_in_a_plane_ends_where_the_next_ray_meets_it(device: Device) -> N
     assert slanted.sum() > 150
     np.testing.assert_allclose(got[slanted], want[slanted], rtol=1e-2, atol=1e-4)
     np.testing.assert_allclose(np.sum(got * normal, axis=1)[slanted], 0.0, atol=1e-4)
+
+
+def test_a_receiver_is_kept_as_exactly_as_the_gbuffer_holds_it(device: Device) -> None:
+    rng = np.random.default_rng(7)
+    depth = np.concatenate([[0, 1, 2**24 - 2, 2**24 - 1], rng.integers(0, 2**24, 500)])
+    count = len(depth)
+    normal, mask = rng.integers(0, 1024, (count, 3)), rng.integers(0, 256, count)
+    inputs = {
+        "depth": (depth / (2**24 - 1)).astype(np.float32),
+        "normal": (normal / 1023).astype(np.float32),
+        "mask": (mask / 255).astype(np.float32),
+    }
+    body = "codes(receiver_unpack(receiver_pack(Receiver(depth, normal, mask))))"
+    functions = """uvec4 codes(Receiver r) {
+        uvec3 n = uvec3(r.normal_code * 1023.0 + 0.5);
+        return uvec4(uint(round(r.depth * 16777215.0)), n.x | n.y << 10 | n.z << 20,
+                     uint(r.mask * 255.0 + 0.5), 0u);
+    }"""
+    got = run_glsl(device, ["lib/decal.glsl"], body, inputs, "uvec4", functions=functions)
+    np.testing.assert_array_equal(got[:, 0], depth)
+    np.testing.assert_array_equal(got[:, 1], normal @ [1, 1 << 10, 1 << 20])
+    np.testing.assert_array_equal(got[:, 2], mask)

@@ -235,6 +235,16 @@ def test_a_box_beyond_the_far_plane_still_paints(rig: MakeRig) -> None:
     np.testing.assert_array_equal(c[32, 48], [255, 0, 0, 255])
 
 
+def test_a_flat_box_that_reaches_past_the_far_plane_paints_up_to_it(rig: MakeRig) -> None:
+    """A strip of road: its lower side is 5 cm below the floor, its end far behind the far plane."""
+    along: Camera = camera(vector(0, 1, 2), vector(0, 0.9, 0), far=6.0)
+    view = rig(floor(placed(size=(2, 100, 0.1), to=(0, 0, -49))), along)
+    c, p = targets(view, "c")[0], view.positions()
+    inside = (np.abs(p[..., 0]) < 0.95) & (np.abs(p[..., 2]) < 0.9) & (p[..., 1] < 0.01)
+    assert inside.sum() > 200
+    np.testing.assert_array_equal(c[inside], np.tile([255, 0, 0, 255], (inside.sum(), 1)))
+
+
 def test_a_thousand_decals_are_a_few_draws_and_culled(rig: MakeRig) -> None:
     """A thousand in two materials and two orders are four draws; out of sight they are none."""
     rng = np.random.default_rng(8)

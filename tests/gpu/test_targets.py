@@ -217,12 +217,11 @@ def test_reading_what_is_rendered_to_is_refused(device: Device, sources: Sources
     depth = graph.texture("depth", (8, 8), D32F)
     graph.clear_texture(depth, (1,))
     color = graph.texture("color", (8, 8), RGBA16F)
-    writing = RasterState(depth_test="less")
-    with pytest.raises(GraphError, match="depth is rendered to and read"):
-        graph.raster(shader, color=color, depth=depth, state=writing, reads={"u_image": depth})
-    testing = RasterState(depth_test="less", depth_write=False)
-    graph.raster(shader, color=color, depth=depth, state=testing, reads={"u_image": depth})
-    for handle in (image, cube, color):
+    for writes in (True, False):  # GL 4.3 knows no texture barriers
+        state = RasterState(depth_test="less", depth_write=writes)
+        with pytest.raises(GraphError, match="depth is rendered to and read"):
+            graph.raster(shader, color=color, depth=depth, state=state, reads={"u_image": depth})
+    for handle in (image, cube):
         graph.keep(handle)
     graph.execute()
 

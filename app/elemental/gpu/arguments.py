@@ -72,7 +72,8 @@ def group_counts(
 def refuse_feedback(node: RasterPass, attached: Attachment, name: str) -> None:
     """Raise GraphError where a pass reads the very level and layer that it renders to.
 
-    GL leaves the result undefined [GL 4.3, 9.3]; software drivers hide it.
+    GL leaves the result undefined, with the writes of depth off, too [GL 4.3, 9.3.1: only texture
+    barriers, of GL 4.5, define it]; software drivers hide it.
     """
     index, target_level, target_layer = attached
     for look, resource in node.bindings:

@@ -330,7 +330,7 @@ class Graph:
         """Note how a render target is used; all targets of a pass have one size."""
         texture, level, layer = target_parts(target)
         index, desc = self._index(texture), texture.desc
-        if written and (index in node.reads or index in node.modifies):
+        if index in node.reads or index in node.modifies:
             refuse_feedback(node, (index, level, layer), texture.name)
         if cleared and desc.mips == 1 and (layer < 0 or desc.slices == 1):
             node.overwrites.append(index)

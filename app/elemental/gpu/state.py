@@ -63,6 +63,8 @@ class RasterState:
     """Channels written; a tuple of masks holds one for each colour target."""
     polygon_offset: tuple[float, float] | None = None
     """(slope factor, constant units)."""
+    depth_clamp: bool = False
+    """Near and far plane cut nothing off; what lies beyond them has their depth."""
 
     def __post_init__(self) -> None:
         if self.cull not in (*_FACES, "none"):
@@ -92,6 +94,7 @@ def apply(gl: c.GL, state: RasterState) -> None:
     if depth:
         gl.glDepthFunc(_COMPARE[state.depth_test])
     gl.glDepthMask(state.depth_write and depth)
+    _switch(gl, c.DEPTH_CLAMP, state.depth_clamp)
     _apply_blend(gl, state.blend)
     stencil = state.stencil
     _switch(gl, c.STENCIL_TEST, stencil is not None)

@@ -12,7 +12,7 @@ import numpy as np
 from elemental.core.layout import Block
 from elemental.gpu.device import Device
 from elemental.gpu.encode import Encoder
-from elemental.gpu.formats import RGBA16F
+from elemental.gpu.formats import RG32UI
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import Ref
 from elemental.gpu.resources import Buffer
@@ -42,6 +42,7 @@ STATE = RasterState(
     cull="front",
     depth_test="gequal",
     depth_write=False,
+    depth_clamp=True,
     blend="alpha",
     stencil=Stencil(test="notequal", reference=REFUSES_DECALS, read_mask=REFUSES_DECALS),
     color_mask=(RGB, RGB, RGB, RGB, (True, False, False, False)),  # D: the specular power alone
@@ -96,7 +97,7 @@ class Decals:
         if not shown:
             return
         meshes = self._meshes
-        receivers = g.texture("decal.receivers", size=gb.depth.size, format=RGBA16F)
+        receivers = g.texture("decal.receivers", size=gb.depth.size, format=RG32UI)
         surface: dict[str, Ref] = {
             "u_depth": gb.depth, "u_gbuffer_a": gb.a, "u_gbuffer_c": gb.c,
         }  # fmt: skip
@@ -121,7 +122,6 @@ class Decals:
                 color=[gb.scene_color, gb.a, gb.b, gb.c, gb.d],
                 depth=gb.depth,
                 reads={
-                    "u_depth": gb.depth,
                     "u_receivers": receivers,
                     "Decals": self._rows,
                     **meshes.materials.reads(),
