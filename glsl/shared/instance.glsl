@@ -1,4 +1,5 @@
-const uint INSTANCE_AREA_LIGHT = 1u;  // its emission is in AreaLights, not in its voxels
+const uint INSTANCE_AREA_LIGHT = 1u;      // its emission is in AreaLights, not in its voxels
+const uint INSTANCE_REFUSES_DECALS = 2u;
 
 // One placed mesh. Draws find theirs by the per-instance attribute a_instance. A hidden one has
 // matrices of zeros: its triangles have no area.

@@ -1,6 +1,7 @@
 // Evaluates the artist's material at a lattice point and appends it to the fragment queue.
 // [Mittring12 "Voxel Lighting Pipeline"]: pixel shader pass, output: fragment queue.
 
+#include "shared/instance.glsl"
 #include "shared/octree.glsl"
 #include "shared/voxelize.glsl"
 #include "lib/lattice.glsl"
@@ -14,7 +15,7 @@ in vec2 v_uv0;
 in vec2 v_uv1;
 in vec4 v_color;
 flat in uint v_material;
-flat in float v_emission;
+flat in uint v_flags;
 
 layout(std430) buffer State { OctreeState octree_state; };
 layout(std430) buffer Fragments { VoxelFragment fragments[]; };
@@ -42,12 +43,15 @@ void main() {
     uint index = atomicAdd(octree_state.fragment_count, 1u);
     if (index >= u_octree.fragment_capacity) return;  // dropped; counted in queue.comp
     VoxelFragment fragment;
-    fragment.position = pack_position(point);
+    bool refuses = (v_flags & INSTANCE_REFUSES_DECALS) != 0u || surface.lighting_model == LIGHTING_UNLIT;
+    fragment.position = pack_position(point) | decal_mask_bits(refuses ? 0.0 : surface.decal_mask);
     // What a surface mirrors goes on as if it were diffuse: the right power, in all directions.
     vec3 albedo = surface.albedo + mirrored_share(surface.specular_color, surface.roughness);
     fragment.albedo = packUnorm4x8(vec4(albedo, opacity));
     fragment.normal = normal_snorm8_pack(normal_ws);
     vec3 emissive = min(surface.emissive, materials[v_material].emission_max);
-    fragment.emissive = rgb9e5_pack(emissive * v_emission);
+    // The voxels leave out what area lights emit.
+    bool area_light = (v_flags & INSTANCE_AREA_LIGHT) != 0u;
+    fragment.emissive = rgb9e5_pack(area_light ? vec3(0.0) : emissive);
     fragments[index] = fragment;
 }

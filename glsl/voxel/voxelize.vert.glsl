@@ -21,7 +21,7 @@ out vec2 v_uv0;
 out vec2 v_uv1;
 out vec4 v_color;
 flat out uint v_material;
-flat out float v_emission;  // 0: an area light, whose emission the voxels leave out
+flat out uint v_flags;  // INSTANCE_*
 
 void main() {
     vec3 p_ws = (a_world_from_local * vec4(a_position, 1.0)).xyz;
@@ -32,7 +32,7 @@ void main() {
     v_uv1 = a_uv1;
     v_color = a_color;
     v_material = a_instance_words.x;
-    v_emission = (a_instance_words.y & INSTANCE_AREA_LIGHT) != 0u ? 0.0 : 1.0;
+    v_flags = a_instance_words.y;
     // The axis becomes depth; (x, y, z) turns cyclically, so no view mirrors another.
     vec3 p = u_voxelize.axis == 0 ? v_point.yzx : u_voxelize.axis == 1 ? v_point.zxy : v_point;
     vec3 clip = vec3((p.xy + 0.5), p.z) / float(u_octree.resolution) * 2.0 - 1.0;

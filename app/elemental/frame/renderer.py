@@ -162,6 +162,8 @@ class Renderer:
             pose = self._last_pose.at(self.scene, time_s)
         if self._meshes.update(pose, time_s):
             self._fit_emission()
+        if self._decals.voxels is not None and self._decals.voxels.changed():
+            self.invalidate("geometry")
         if pose is None:
             return self.scene.lights
         self._area_lights.follow(pose)
@@ -234,6 +236,7 @@ class Renderer:
                 area_m2=sizing.projected_area(present),
                 max_emission=sizing.max_emission(self.scene, self._area_lights.lights),
                 budget_bytes=s["gi.memory_budget_mb"] * MIB,
+                decals=self._decals.voxels,
             )
         return self._voxels
 

@@ -27,6 +27,7 @@ from elemental.passes.decal_pack import (
     pack_decals,
     runs_of,
 )
+from elemental.passes.decal_voxels import VOXEL_CHANNELS, DecalVoxels
 from elemental.passes.gbuffer import REFUSES_DECALS, GBuffer
 from elemental.passes.material_table import material_shader
 from elemental.passes.scene_gpu import GpuScene
@@ -62,10 +63,11 @@ CUBE = np.array(
 
 
 class Decals:
-    """A scene's decals on the device."""
+    """A scene's decals on the device. ``voxels``: what colours voxels; None without decals."""
 
     def __init__(self, device: Device, scene: Scene, meshes: GpuScene) -> None:
         self._scene, self._meshes = scene, meshes
+        self.voxels: DecalVoxels | None = None
         self._buffers: list[Buffer] = []
         self._seen: bytes | None = None
         if not scene.decals:
@@ -88,6 +90,8 @@ class Decals:
         self._commands = upload("draws", commands, dynamic=True)
         layout = [(self._visible, "1u/i", ("a_decal",))]
         self._vertices = device.vertex_input(layout, upload("indices", CUBE))
+        if any(VOXEL_CHANNELS & {*decal.channels} for decal in scene.decals):
+            self.voxels = DecalVoxels(device, scene, meshes, self._rows)
 
     def draw(self, g: Graph, view: Block, gb: GBuffer) -> None:
         """Blend what the camera sees of the decals into the G-buffer, the lowest order first."""
@@ -154,6 +158,8 @@ class Decals:
 
     def release(self) -> None:
         """Free everything."""
+        if self.voxels is not None:
+            self.voxels.release()
         if self._buffers:
             self._vertices.release()
         for buffer in self._buffers:

@@ -9,9 +9,9 @@ import numpy as np
 
 from elemental.passes.scene_pack import (
     Array,
-    area_light_flags,
     bending,
     instance_boxes,
+    instance_flags,
     pack_instances,
 )
 from elemental.scene.area_lights import AreaLight
@@ -113,9 +113,9 @@ class InstanceTable:
         chosen = np.array([wanted(k) for k in range(len(scene.materials))], np.bool_)
         return chosen[[scene.meshes[instance.mesh].material for instance in scene.instances]]
 
-    def set_area_lights(self, area_lights: Sequence[AreaLight]) -> list[Change]:
+    def set_area_lights(self, scene: Scene, area_lights: Sequence[AreaLight]) -> list[Change]:
         """Flag the instances that are area lights. Returns those that become or cease to be."""
-        flags = area_light_flags(len(self.rows), area_lights)
+        flags = instance_flags(scene, area_lights)
         differ = np.flatnonzero(flags != self.rows["flags"]).tolist()
         self.rows["flags"] = flags
         return [Change(n, self._box(n), self._box(n), False, False) for n in differ]

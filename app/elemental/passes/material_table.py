@@ -11,7 +11,7 @@ from elemental.core.layout import Block, layouts, pack
 from elemental.gpu.device import Device
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import Ref, Unordered
-from elemental.gpu.shaders import Define, Raster
+from elemental.gpu.shaders import Compute, Define, Raster
 from elemental.passes import material_pack, material_snippets
 from elemental.passes.material_snippets import MaterialSnippet
 from elemental.passes.scene_pack import Batch
@@ -162,6 +162,12 @@ def material_shader(
     return _shader(vert, frag, batch.definition, mask, transforms, more)
 
 
+def material_compute(path: str, batch: Batch, defines: Mapping[str, int] | None = None) -> Compute:
+    """The same of a compute shader, which takes its textures by `GpuScene.texture_reads`."""
+    more = tuple(defines.items()) if defines else ()
+    return _compute(path, batch.definition, batch.texture_mask, batch.uv_transforms, more)
+
+
 @cache
 def _shader(
     vert: str,
@@ -171,11 +177,32 @@ def _shader(
     uv_transforms: bool,
     more: tuple[tuple[str, int], ...],
 ) -> Raster:
-    defines: dict[str, Define] = {
+    defines = _defines(definition, texture_mask, uv_transforms, more)
+    return Raster(vert, frag, defines=defines, snippets={material_snippets.NAME: definition.key})
+
+
+@cache
+def _compute(
+    path: str,
+    definition: MaterialDefinition,
+    texture_mask: int,
+    uv_transforms: bool,
+    more: tuple[tuple[str, int], ...],
+) -> Compute:
+    defines = _defines(definition, texture_mask, uv_transforms, more)
+    return Compute(path, defines=defines, snippets={material_snippets.NAME: definition.key})
+
+
+def _defines(
+    definition: MaterialDefinition,
+    texture_mask: int,
+    uv_transforms: bool,
+    more: tuple[tuple[str, int], ...],
+) -> dict[str, Define]:
+    return {
         "MATERIAL_TEXTURES": texture_mask,
         "MATERIAL_UV_TRANSFORMS": int(uv_transforms),
         "MATERIAL_FAULTS": int(definition.may_fail),
         "LIGHTING_MODELS": models_mask(definition.lighting_models),
         **dict(more),
     }
-    return Raster(vert, frag, defines=defines, snippets={material_snippets.NAME: definition.key})

@@ -9,6 +9,7 @@ import numpy as np
 
 from elemental.gpu.device import Device
 from elemental.gpu.encode import Encoder
+from elemental.gpu.refs import Ref
 from elemental.gpu.resources import Buffer
 from elemental.passes import scene_pack
 from elemental.passes.culling import Culling
@@ -198,6 +199,14 @@ class SceneDraws:
             for own in batch.own_textures:
                 encoder.bind(f"u_{own.name}", self._textures.own(own))
             yield batch
+
+    def texture_reads(self, batch: Batch) -> dict[str, Ref]:
+        """A batch's textures by their GLSL names, for a pass that is of it alone."""
+        slots = zip(SLOTS, batch.textures, strict=True)
+        reads: dict[str, Ref] = {
+            f"u_{slot}_texture": self._textures.sampled(slot, number) for slot, number in slots
+        }
+        return reads | {f"u_{own.name}": self._textures.own(own) for own in batch.own_textures}
 
     def draw_positions(
         self,

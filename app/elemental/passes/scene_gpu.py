@@ -154,7 +154,7 @@ class GpuScene(SceneDraws):
 
     def set_area_lights(self, area_lights: Sequence[AreaLight]) -> None:
         """Replace the area lights; instances that become one, or cease to, are among `changes`."""
-        for change in self._table.set_area_lights(area_lights):
+        for change in self._table.set_area_lights(self._scene, area_lights):
             self._material_changes.setdefault(change.instance, change)
             row = self._table.rows[change.instance]
             self.instances.write(row.tobytes(), change.instance * row.nbytes)

@@ -132,14 +132,16 @@ def pack_instances(scene: Scene, area_lights: Sequence[AreaLight] = ()) -> Array
         normal_from_local=normals,
         prev_world_from_local=matrices,
         material=[scene.meshes[instance.mesh].material for instance in scene.instances],
-        flags=area_light_flags(len(matrices), area_lights),
+        flags=instance_flags(scene, area_lights),
     )
 
 
-def area_light_flags(instances: int, area_lights: Sequence[AreaLight]) -> Array:
+def instance_flags(scene: Scene, area_lights: Sequence[AreaLight]) -> Array:
     """(instances,) uint32: Instance.flags."""
-    flags = np.zeros(instances, np.uint32)
-    flags[[light.instance for light in area_lights]] = layouts().constant("INSTANCE_AREA_LIGHT")
+    refuses = np.array([not instance.receives_decals for instance in scene.instances], np.uint32)
+    flags = refuses * np.uint32(layouts().constant("INSTANCE_REFUSES_DECALS"))
+    area_light = np.uint32(layouts().constant("INSTANCE_AREA_LIGHT"))
+    flags[[light.instance for light in area_lights]] |= area_light
     return flags
 
 

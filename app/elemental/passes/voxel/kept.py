@@ -3,6 +3,8 @@ what never does. [Mittring12 "Voxel Lighting Pipeline": region keeps static voxe
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from elemental.core.layout import layouts
 from elemental.gpu.device import Device
 from elemental.gpu.graph import Graph
@@ -17,6 +19,9 @@ from elemental.passes.voxel.octree import (
     Octree,
 )
 from elemental.passes.voxel.voxelize import append_fragments
+
+if TYPE_CHECKING:
+    from elemental.passes.decal_voxels import DecalVoxels
 
 BEGIN = Compute("voxel/begin_step.comp.glsl")
 QUEUE_STILL = Compute("voxel/queue.comp.glsl", defines={"STILL": 1})
@@ -60,15 +65,19 @@ class Kept:
             buffer.release()
 
 
-def keep_still(g: Graph, scene: GpuScene, octree: Octree, kept: Kept) -> None:
+def keep_still(
+    g: Graph, scene: GpuScene, octree: Octree, kept: Kept, decals: DecalVoxels | None = None
+) -> None:
     """Rasterize what never moves, for all steps to come, and forget the steps so far."""
     g.copy_buffer(octree.empty_state, octree.state)
     append_fragments(g, scene, octree, kept.fragments, dynamic=False)
-    _mark_still(g, octree, kept)
+    _mark_still(g, octree, kept, decals)
 
 
-def _mark_still(g: Graph, octree: Octree, kept: Kept) -> None:
+def _mark_still(g: Graph, octree: Octree, kept: Kept, decals: DecalVoxels | None = None) -> None:
     g.compute(QUEUE_STILL, writes={"State": octree.state}, params=octree.params, groups=1)
+    if decals is not None:
+        decals.paint(g, octree, kept.fragments, moving=False)
     mark(g, octree, kept.fragments, kept.still_points, kept.still_nodes)
     g.clear_buffer(kept.moving_points)
 

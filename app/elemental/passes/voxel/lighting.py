@@ -27,6 +27,7 @@ from elemental.passes.voxel.steps import (
 from elemental.passes.voxel.voxelize import voxelize
 
 if TYPE_CHECKING:
+    from elemental.passes.decal_voxels import DecalVoxels
     from elemental.passes.shadow import ShadowMaps
     from elemental.passes.sky import Sky
 
@@ -39,7 +40,8 @@ class VoxelLighting:
     """The octree of a scene with what it was built from and lit by.
 
     ``area_m2``: `sizing.projected_area`; ``capacity``: None counts first and allocates to fit.
-    Where parts of the scene can move, the octree is built in steps (`steps`).
+    ``decals`` colour what is built. Where parts of the scene can move, the octree is built in steps
+    (`steps`).
     """
 
     def __init__(
@@ -51,9 +53,11 @@ class VoxelLighting:
         max_emission: float,
         budget_bytes: int,
         capacity: Capacity | None = None,
+        decals: DecalVoxels | None = None,
     ) -> None:
         self.device = device
         self.scene = scene
+        self.decals = decals
         self.budget_bytes = budget_bytes
         self._moves = bool(scene.dynamic.any())
         self._dynamic = scene.dynamic.tobytes()
@@ -130,7 +134,8 @@ class VoxelLighting:
         if built:
             whole |= self._grow()
             if self._kept is None:
-                build(g, self.octree, voxelize(g, self.scene, self.octree))
+                queue = voxelize(g, self.scene, self.octree, self.decals)
+                build(g, self.octree, queue)
             else:
                 everything = lit_anew or (gathers and not spread)
                 blocks = self._next_slice() if spread else NO_BLOCKS
@@ -195,7 +200,7 @@ class VoxelLighting:
         stands = since == 0 or all(self.scene.dynamic[change.instance] for change in changes)
         whole = not (self._built_version is not None and since <= 1 and stands)
         if whole:
-            keep_still(g, self.scene, self.octree, kept)
+            keep_still(g, self.scene, self.octree, kept, self.decals)
         elif self._regridded:
             mark_still(g, self.octree, kept)
             whole = True
@@ -204,7 +209,7 @@ class VoxelLighting:
         # Beside regions of other levels voxels depend on more than their own surroundings.
         several = not self.octree.grid.one_leaf_level
         everything |= whole or several or len(boxes) > boxes_max()
-        step(g, self.scene, self.octree, kept, shadows, boxes, everything, blocks)
+        step(g, self.scene, self.octree, kept, shadows, boxes, everything, blocks, self.decals)
         return whole
 
     def _counted(self, raw: bytes) -> None:

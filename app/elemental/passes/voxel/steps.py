@@ -9,6 +9,7 @@ theirs. What the moving points left or reached, and what their shadows did, is d
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,6 +24,9 @@ from elemental.passes.voxel.build import level_params, state_offset
 from elemental.passes.voxel.kept import BEGIN, Kept
 from elemental.passes.voxel.octree import Octree
 from elemental.passes.voxel.voxelize import append_fragments
+
+if TYPE_CHECKING:
+    from elemental.passes.decal_voxels import DecalVoxels
 
 BEGIN_LISTS = Compute("voxel/begin_step.comp.glsl", defines={"LISTS_ONLY": 1})
 QUEUE = Compute("voxel/queue.comp.glsl")
@@ -53,6 +57,7 @@ def step(
     casters: Sequence[Box],
     everything: bool,
     blocks: range = NO_BLOCKS,
+    decals: DecalVoxels | None = None,
 ) -> None:
     """Bring nodes, bricks and leaf attributes up to what moved, and list what is dirty.
 
@@ -63,6 +68,8 @@ def step(
     g.compute(BEGIN, writes=state, params=octree.params, groups=1)
     append_fragments(g, scene, octree, kept.fragments, dynamic=True)
     g.compute(QUEUE, "voxelize.queue", writes=state, params=octree.params, groups=1)
+    if decals is not None:
+        decals.paint(g, octree, kept.fragments, moving=True)
     _rebuild_bits(g, octree, kept)
     if not everything:
         _relight(g, octree, kept, shadows, casters, blocks)

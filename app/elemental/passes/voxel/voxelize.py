@@ -4,6 +4,7 @@ Pipeline"]"""
 from __future__ import annotations
 
 from collections import defaultdict
+from typing import TYPE_CHECKING
 
 from elemental.core.layout import layouts, pack
 from elemental.gpu.encode import Encoder
@@ -17,6 +18,9 @@ from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.scene_pack import Batch
 from elemental.passes.voxel.octree import Survey
 from elemental.scene.model import AlphaMode
+
+if TYPE_CHECKING:
+    from elemental.passes.decal_voxels import DecalVoxels
 
 VERT, FRAG = "voxel/voxelize.vert.glsl", "voxel/voxelize.frag.glsl"
 SELECT = Compute("voxel/select_triangles.comp.glsl")
@@ -66,8 +70,10 @@ def variant_shader(batch: Batch) -> Raster:
     return material_shader(VERT, FRAG, batch, texture_mask=mask, uv_transforms=True)
 
 
-def voxelize(g: Graph, scene: GpuScene, octree: Survey) -> BufferHandle:
-    """The fragment queue of the whole scene, of this frame alone."""
+def voxelize(
+    g: Graph, scene: GpuScene, octree: Survey, decals: DecalVoxels | None = None
+) -> BufferHandle:
+    """The fragment queue of the whole scene, coloured by decals, of this frame alone."""
     g.copy_buffer(octree.empty_state, octree.state)
     nbytes = octree.capacity.fragments * layouts().struct("VoxelFragment").itemsize
     fragments = g.buffer("voxel.fragments", nbytes)
@@ -75,6 +81,8 @@ def voxelize(g: Graph, scene: GpuScene, octree: Survey) -> BufferHandle:
     g.compute(
         QUEUE, "voxelize.queue", writes={"State": octree.state}, params=octree.params, groups=1
     )
+    if decals is not None:
+        decals.paint(g, octree, fragments, moving=False)
     return fragments
 
 
