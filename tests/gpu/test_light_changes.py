@@ -49,6 +49,27 @@ CHANGES: dict[str, dict[str, Any]] = {
 }
 
 
+def test_lights_end_by_the_exposure_of_now(renderers: Any) -> None:
+    """Not by that of the first frame; no map is drawn anew for it."""
+    lamps = [
+        Light(f"lamp {n}", "point", vector(1, 1, 1), 1.0, vector(n - 3, 2, 0), vector(0, -1, 0))
+        for n in range(6)
+    ]
+    world = court()
+    world.lights = lamps
+    turned = renderers(world, exposure=4.0)
+    bright, _ = picture(turned)
+    turned.set_settings(turned.settings.replace({"exposure": -7.5}))
+    got, passes = picture(turned)
+    assert not any(name.startswith("shadow.") for name in passes)
+    want, _ = picture(renderers(world, exposure=-7.5))
+    np.testing.assert_array_equal(got, want)
+    assert np.abs(got - bright).max() > 0.05  # they end sooner
+    turned.set_settings(turned.settings.replace({"exposure": -7.9}))
+    _, passes = picture(turned)
+    assert "light voxels" not in passes
+
+
 @pytest.mark.parametrize("change", CHANGES)
 def test_an_edited_light_lights_the_next_frame(renderers: Any, change: str) -> None:
     """As in a scene that began with it; nothing is voxelized anew."""

@@ -41,7 +41,7 @@ MIB = 1 << 20
 OCTREE_KEYS = frozenset({"gi.resolution", "gi.memory_budget_mb", "gi.area_lights"})
 SHADOW_KEYS = frozenset(
     f"shadow.{name}" for name in ("resolution", "cascades", "distance", "budget", "penumbras")
-) | {"lights.culling", "lights.cutoff"}
+) | {"lights.culling"}
 """Settings that the octree and the shadow maps are made for."""
 
 
@@ -126,6 +126,7 @@ class Renderer:
             self._shadows.release()
             self._shadows = ShadowMaps(self.device, _shadow_settings(settings))
             self.invalidate("light")
+        self._shadows.planner.set_cutoff(_cutoff(settings))
         if "gi.area_lights" in changed:
             self._update_area_lights()
         if changed & OCTREE_KEYS:
@@ -287,5 +288,11 @@ def _shadow_settings(settings: Settings) -> ShadowSettings:
         budget=settings["shadow.budget"],
         penumbras=settings["shadow.penumbras"],
         culling=settings["lights.culling"],
-        cutoff=settings["lights.cutoff"] / 2.0 ** settings["exposure"],
+        cutoff=_cutoff(settings),
     )
+
+
+def _cutoff(settings: Settings) -> float:
+    """Irradiance, lux, at which lights without a range end: darker where the picture is developed
+    brighter. In whole stops, since voxels are lit anew for each change."""
+    return float(settings["lights.cutoff"] / 2.0 ** math.ceil(settings["exposure"]))

@@ -52,7 +52,6 @@ class ShadowMaps:
 
     def __init__(self, device: Device, settings: ShadowSettings) -> None:
         self._device = device
-        self.settings = settings
         self.planner = ShadowPlanner(settings)
         self._profiles = LightProfiles(device)
         self.light_key: Hashable = None
@@ -182,7 +181,7 @@ class ShadowMaps:
 
     def _allocate(self, layers: int, moves: bool) -> None:
         """At least so many layers; a single texel where no light may look."""
-        texels = self.settings.resolution if layers else 1
+        texels = self.planner.settings.resolution if layers else 1
         if self._maps is not None:
             if layers <= (self._maps.layers or 0) and texels <= self._maps.width:
                 return

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -103,6 +103,12 @@ class ShadowPlanner:
         s = self.settings
         self._budget = ShadowBudget(s.budget, s.resolution, s.cascades)
         self._pool = TilePool(0, s.resolution)
+
+    def set_cutoff(self, cutoff: float) -> None:
+        """Have lights without a range end at another irradiance, lux; their maps stay."""
+        if cutoff != self.settings.cutoff:
+            self.settings = replace(self.settings, cutoff=cutoff)
+            self._lights = []
 
     def plan(
         self, lights: Sequence[Light], bounds: Bounds, camera: Camera, size: tuple[int, int]

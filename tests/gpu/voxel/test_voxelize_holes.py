@@ -11,6 +11,7 @@ import numpy.typing as npt
 import pytest
 
 from elemental.gpu.device import Device
+from elemental.gpu.gl import SHADER_STORAGE_BARRIER as STORAGE
 from elemental.passes.voxel.grid import Grid
 from elemental.passes.voxel.octree import Capacity, Survey
 from elemental.passes.voxel.voxelize import voxelize
@@ -107,3 +108,34 @@ def test_at_the_finest_resolution_each_step_through_a_face_meets_a_voxel(device:
         assert (held_0 | held_1)[through].all()
         steps += int(through.sum())
     assert steps > 10_000
+
+
+def test_the_three_views_wait_for_none_of_each_other(
+    device: Device, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each fragment takes a place of its own by an atomic: no storage barrier between the axes."""
+    lit = Lit(device, scene(part(box((1.0, 1.0, 1.0)), 0, TURN)))
+    survey = Survey(device, lit.grid(16), Capacity(10_000, 1, 1, 1, 1), 0.0)
+    bits: list[tuple[str, int]] = []
+    names: list[str] = []
+    barrier, push = device.gl.glMemoryBarrier, device.executor._push
+
+    def note(value: int) -> None:
+        bits.append((names[-1], value))
+        barrier(value)
+
+    def name(of_pass: str) -> None:
+        names.append(of_pass)
+        push(of_pass)
+
+    monkeypatch.setattr(device.executor, "_push", name)
+    monkeypatch.setattr(device.gl, "glMemoryBarrier", note)
+    g = device.begin_frame()
+    g.keep(voxelize(g, lit.gpu, survey))
+    g.execute()
+    axes = [name for name in names if ".textures" in name]
+    assert [name.split(".")[1] for name in axes] == ["x", "y", "z"]
+    assert not [name for name, value in bits if name in axes[1:] and value & STORAGE]
+    assert [name for name, value in bits if name == "voxelize.queue" and value & STORAGE]
+    for item in (survey, lit):
+        item.release()

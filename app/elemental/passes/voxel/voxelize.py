@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from elemental.core.layout import layouts, pack
 from elemental.gpu.encode import Encoder
 from elemental.gpu.graph import Graph
-from elemental.gpu.refs import AnyBuffer, BufferHandle
+from elemental.gpu.refs import AnyBuffer, BufferHandle, Unordered
 from elemental.gpu.shaders import Compute, Raster
 from elemental.gpu.state import RasterState
 from elemental.passes.material_pack import BASE_COLOR_SLOT, SLOTS, slot_mask
@@ -125,8 +125,8 @@ def append_fragments(
                 state=BOTH_SIDES,
                 reads=scene.reads(),
                 writes={
-                    "State": octree.state,
-                    "Fragments": fragments,
+                    "State": Unordered(octree.state),  # counted by atomics; each has a place
+                    "Fragments": Unordered(fragments),
                     **scene.materials.writes(batches),
                 },
                 params={
