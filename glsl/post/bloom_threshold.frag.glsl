@@ -11,7 +11,7 @@ out vec4 o_color;
 const float DARKEST = 1e-6;
 
 void main() {
-    vec3 exposed = v_exposure * max(texelFetch(u_picture, ivec2(gl_FragCoord.xy), 0).rgb, vec3(0.0));
+    vec3 exposed = v_exposure * texelFetch(u_picture, ivec2(gl_FragCoord.xy), 0).rgb;
     float share = clamp(1.0 - u_bloom.threshold / max(luminance(exposed), DARKEST), 0.0, 1.0);
     o_color = vec4(min(share * exposed, HALF_MAX), 1.0);
 }

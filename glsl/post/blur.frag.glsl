@@ -1,5 +1,6 @@
 // A Gaussian along one axis, and over it the coarser level, enlarged: [Mittring12 "Bloom"]
 // "D' = blur(D, b4) + E'".
+#include "lib/packing.glsl"
 #include "shared/blur.glsl"
 
 #ifndef COARSER
@@ -12,6 +13,8 @@ uniform sampler2D u_coarser;  // half the size, rounded up
 #endif
 
 out vec4 o_color;
+
+const vec3 BRIGHTEST = vec3(0.5 * HALF_MAX);  // leaves room for lens flares
 
 void main() {
     vec2 size = vec2(textureSize(u_picture, 0));
@@ -26,5 +29,5 @@ void main() {
     vec2 coarser_px = 0.5 * gl_FragCoord.xy;
     sum += textureLod(u_coarser, coarser_px / vec2(textureSize(u_coarser, 0)), 0.0).rgb;
 #endif
-    o_color = vec4(sum, 1.0);
+    o_color = vec4(min(sum, BRIGHTEST), 1.0);
 }

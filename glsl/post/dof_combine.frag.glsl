@@ -1,5 +1,6 @@
 // The sharp picture under what is blurred behind and before its focus.
 #include "lib/view.glsl"
+#include "lib/finite.glsl"
 #include "lib/focus.glsl"
 
 uniform sampler2D u_picture;
@@ -16,6 +17,7 @@ void main() {
     vec2 half_uv = 0.5 * gl_FragCoord.xy / vec2(textureSize(u_far, 0));
     float radius = circle_radius(linear_depth(texelFetch(u_depth, pixel, 0).r));
     vec4 color = texelFetch(u_picture, pixel, 0);
+    color.rgb = finite_radiance(color.rgb);
     vec4 far = textureLod(u_far, half_uv, 0.0);
     float share = smoothstep(SHARP_PX, BLURRED_PX, radius);
     if (share > 0.0 && far.a > 0.0) color.rgb = mix(color.rgb, far.rgb / far.a, share);

@@ -9,6 +9,7 @@ uniform sampler2D u_target_like;
 
 out vec4 o_light;
 
+const vec3 BRIGHTEST = vec3(0.5 * HALF_MAX);  // leaves room for the bloom that it is added to
 const float SOFT_BORDER = 0.15;  // share of the picture over which copies fade out [inferred]
 
 float border_mask(vec2 uv) {
@@ -25,5 +26,5 @@ void main() {
         float mask = border_mask(uv);
         if (mask > 0.0) sum += mask * ghost.rgb * textureLod(u_blurred, uv, 0.0).rgb;
     }
-    o_light = vec4(min(sum, HALF_MAX), 0.0);
+    o_light = vec4(min(sum, BRIGHTEST), 0.0);
 }

@@ -1,6 +1,7 @@
 // Streaks of the pixels around: those that lie before this one, those behind it that it leaves
 // uncovered, and those that move along with it. [McGuire12 "A Reconstruction Filter for Plausible
 // Motion Blur"]
+#include "lib/finite.glsl"
 #include "shared/motion_blur.glsl"
 
 uniform sampler2D u_picture;
@@ -47,7 +48,7 @@ void main() {
     vec3 motion = texelFetch(u_motion_px, pixel, 0).xyz;
     float own = max(length(motion.xy), SHORTEST_PX);
     float weight = 1.0 / own;
-    vec3 sum = weight * color.rgb;
+    vec3 sum = weight * finite_radiance(color.rgb);
     float shift = jitter();
     for (int i = 0; i < TAPS; ++i) {
         if (i == TAPS / 2) continue;
@@ -60,7 +61,7 @@ void main() {
             + is_before(motion.z, there.z) * cone(distance, own)
             + 2.0 * cylinder(distance, streak) * cylinder(distance, own);
         weight += share;
-        sum += share * texelFetch(u_picture, tap, 0).rgb;
+        sum += share * finite_radiance(texelFetch(u_picture, tap, 0).rgb);
     }
     o_color.rgb = sum / weight;
 }

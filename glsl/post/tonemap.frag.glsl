@@ -1,5 +1,6 @@
 // Bloom, fringe, vignette, white balance, film curve, sRGB, grading, grain and dither in one pass.
 #include "lib/film.glsl"
+#include "lib/finite.glsl"
 #include "lib/tonemap.glsl"
 
 #ifndef BLOOM
@@ -53,7 +54,7 @@ vec3 scene_radiance(ivec2 pixel, vec2 size, vec2 jitter) {
 #else
     vec3 radiance = texelFetch(u_scene_color, pixel, 0).rgb;
 #endif
-    return max(radiance, vec3(0.0));
+    return finite_radiance(radiance);
 }
 
 vec3 look_up(sampler3D cube, vec3 place) {

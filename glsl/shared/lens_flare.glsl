@@ -7,6 +7,10 @@ layout(std140) uniform LensFlare {
     float sprite_radius;        // px of the picture's quarter
     float sprite_share;         // of a texel's light in each texel that its sprite covers wholly
     uint capacity;              // sprites
+    float brightest;            // exposed light of a sprite: all of them on one texel are a half float
+    float reserved0;
+    float reserved1;
+    float reserved2;
 } u_flare;
 
 // A DrawElementsIndirectCommand of one quad a sprite, and what did not fit.

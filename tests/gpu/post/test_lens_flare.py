@@ -196,6 +196,26 @@ def test_the_smallest_pictures_work(darkroom: MakeDarkroom, size: tuple[int, int
     darkroom(lens_flare__intensity=1.0).develop(flat(*size, 50.0))
 
 
+@pytest.mark.parametrize("radius", [1.0, 3.7])
+def test_sums_of_the_brightest_sprites_are_numbers(darkroom: MakeDarkroom, radius: float) -> None:
+    """A sprite at every texel, each brighter than a half float holds."""
+    room = darkroom(**one(0.25), exposure=16.0)
+
+    def passes(g: Graph, picture: AnyTexture, _: AnyTexture) -> TextureHandle:
+        exposed = room.history.eye.update(g, None, room.settings, None)
+        quarter = downsample(g, downsample(g, picture), "quarter")
+        mask = room.history.textures.mask(SHAPE, "bokeh_disc.png")
+        assert mask is not None
+        block = lens_flare._block(room.settings, radius, mask, 2048)
+        counts, sprites = lens_flare.append_sprites(g, exposed, quarter, block)
+        quad = room.history.quad
+        return lens_flare.draw_sprites(g, quarter, block, counts, sprites, mask, quad)
+
+    light = room.run(passes, flat(*SIZE, 65504.0))[..., :3]
+    assert light.max() < np.finfo(RGBA16F.dtype).max  # llvmpipe rounds to it, others to infinity
+    assert light[8:-8, 8:-8].min() > 10_000.0
+
+
 def test_light_has_half_floats(darkroom: MakeDarkroom) -> None:
     room = darkroom(**one(0.75))
     assert flares(room, lamps((60, 124), radiance=60000.0)).max() < np.finfo(RGBA16F.dtype).max

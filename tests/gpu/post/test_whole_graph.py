@@ -105,7 +105,7 @@ def test_the_same_frames_come_out_the_same(darkroom: MakeDarkroom) -> None:
 
 
 def test_pictures_without_numbers_in_them_stay_pictures(darkroom: MakeDarkroom) -> None:
-    """A broken texel of the scene neither spreads over the picture nor stays in the eye."""
+    """A broken texel of the scene does not stay in the eye."""
     room = darkroom(**DEFAULTS)
     pixels = hdr(64, 96)
     clean = room.develop(pixels, 0.0)
@@ -113,6 +113,28 @@ def test_pictures_without_numbers_in_them_stay_pictures(darkroom: MakeDarkroom) 
     room.develop(pixels, 0.1)
     assert np.isfinite(room.eye()["brightness"])
     assert np.abs(room.develop(hdr(64, 96), 20.0).astype(int) - clean).max() <= 1
+
+
+@pytest.mark.parametrize("on", ["bloom", "lens_flare", "dof", "fringe", "all"])
+@pytest.mark.parametrize(("broken", "stands_for"), [(np.nan, 0.0), (-np.inf, 0.0), (np.inf, 65504)])
+def test_what_is_no_number_spreads_nowhere(
+    darkroom: MakeDarkroom, on: str, broken: float, stands_for: float
+) -> None:
+    """Broken texels are developed as black ones, overflown ones as the brightest."""
+    words = {**EVERYTHING, "fxaa__enabled": False}  # which looks far along an edge
+    if on != "all":
+        words |= {"bloom__intensity": 0.0, "lens_flare__intensity": 0.0, "grain__jitter": 0.0}
+        words |= {"dof__enabled": False, "scene_color__fringe": 0.0}
+        chosen = ("dof__enabled", "scene_color__fringe", f"{on}__intensity")
+        words |= {key: value for key, value in EVERYTHING.items() if key in chosen and on in key}
+    pictures = []
+    for value in (broken, stands_for):
+        pixels = hdr(48, 64)
+        pixels[16:24, 24:32, :3] = value  # whole texels of every smaller picture that reads it
+        pictures.append(darkroom(**words).develop(pixels, 0.0).astype(int))
+    strayed = np.abs(pictures[0] - pictures[1]).max(axis=-1) > 1
+    strayed[14:26, 22:34] = False  # a lookup between texels has one of each
+    assert not strayed.any()
 
 
 def test_defaults_are_the_tables() -> None:

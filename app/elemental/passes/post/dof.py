@@ -53,7 +53,7 @@ def depth_of_field(
     g.raster(
         PREPARE,
         color=prepared,
-        reads={"u_picture": Sampled(picture, "linear"), "u_depth": depth},
+        reads={"u_picture": picture, "u_depth": depth},
         params={"View": view, "Focus": focus},
     )
     g.raster(

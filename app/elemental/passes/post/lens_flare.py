@@ -50,6 +50,7 @@ SMALLEST_COPY = 0.02
 """Least size of a copy, share of the picture [inferred]."""
 REFLECTED = 0.0016
 """Share of the light in each copy at intensity 1: two reflections at plain glass, 4 % each."""
+HALF_MAX = float(np.finfo(np.float16).max)
 SIZE_PER_POSITION = 4.0
 """A position of 0.5 is the centre, 0.75 the picture itself, 0.25 its mirror image [inferred]."""
 
@@ -206,11 +207,14 @@ def _block(s: Mapping[str, Any], radius: float, shape: Mask, texels: int) -> Blo
         size = SIZE_PER_POSITION * (s[position] - 0.5)
         ghost[:3] = factor * s[tint]
         ghost[3] = math.copysign(max(abs(size), SMALLEST_COPY), size)
+    share = 1.0 / (4.0 * radius * radius * max(shape.mean, 1e-3))
+    overlapping = (2.0 * radius + 1.0) ** 2  # as far as sprite.vert.glsl reaches
     return pack(
         layouts().block("LensFlare"),
         ghosts=ghosts,
         threshold=s["lens_flare.threshold"],
         sprite_radius=radius,
-        sprite_share=1.0 / (4.0 * radius * radius * max(shape.mean, 1e-3)),
+        sprite_share=share,
         capacity=min(texels, MOST_SPRITES),
+        brightest=HALF_MAX / max(overlapping * share, 1.0),
     )

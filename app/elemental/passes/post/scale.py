@@ -5,7 +5,7 @@ from __future__ import annotations
 from elemental.core.layout import layouts, pack
 from elemental.gpu.formats import RGBA16F
 from elemental.gpu.graph import Graph
-from elemental.gpu.refs import AnyTexture, Sampled, TextureHandle
+from elemental.gpu.refs import AnyTexture, TextureHandle
 from elemental.gpu.shaders import Raster
 
 TRIANGLE = "post/triangle.vert.glsl"
@@ -31,7 +31,7 @@ def downsample(g: Graph, picture: AnyTexture, name: str = "half") -> TextureHand
         DOWNSAMPLE,
         f"post.{name}",
         color=half,
-        reads={"u_picture": Sampled(picture, "linear")},
+        reads={"u_picture": picture},
     )
     return half
 
