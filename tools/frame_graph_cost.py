@@ -13,11 +13,8 @@ from __future__ import annotations
 import argparse
 import tempfile
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from statistics import median
-from typing import Any
 
 import numpy as np
 
@@ -26,6 +23,8 @@ from elemental.gpu.formats import RGBA16F
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import Ref
 from elemental.gpu.shaders import Compute, Raster
+
+from driverless import without_driver
 
 BINDINGS = """
 uniform sampler2D u_a; uniform sampler2D u_b; uniform sampler2D u_c;
@@ -101,37 +100,6 @@ class Workload:
         return median(declared) * scale, median(ran) * scale
 
 
-@contextmanager
-def without_driver(device: Device, workload: Workload) -> Iterator[None]:
-    """Replace every GL call of a warm device by an empty function."""
-
-    def nothing(*_: Any) -> int:
-        return 0x911A  # a signalled fence
-
-    def available(_query: int, _parameter: int, answer: Any) -> None:
-        answer._obj.value = 1
-
-    class _Nothing:
-        def __getattr__(self, _: str) -> Callable[..., int]:
-            return nothing
-
-    stub: Any = _Nothing()
-    gl = device.gl
-    real = {name: value for name, value in vars(gl).items() if name.startswith("gl")}
-    programs = [device.program(workload.compute), device.program(workload.raster)]
-    kept = [(program, program.mgl, dict(program.vertex_arrays)) for program in programs]
-    for name in real:
-        setattr(gl, name, available if name == "glGetQueryObjectiv" else nothing)
-    for program, _, _ in kept:
-        program.mgl = stub
-        program.vertex_arrays.update(dict.fromkeys(program.vertex_arrays, stub))
-    yield
-    for program, mgl, vertex_arrays in kept:
-        program.mgl, program.vertex_arrays = mgl, vertex_arrays
-    for name, value in real.items():
-        setattr(gl, name, value)
-
-
 def endure(workload: Workload, frames: int) -> None:
     """Print the resident memory along ``frames`` frames (Linux)."""
     for frame in range(frames + 1):
@@ -157,7 +125,7 @@ def main() -> None:
         workload.measure(10)
         driver = workload.measure(options.frames)
         device.finish()
-        with without_driver(device, workload):
+        with without_driver(device):
             python = workload.measure(options.frames)
     print(f"{device.info.renderer}; {options.passes} passes a frame, µs a pass")
     for name, (declare, run) in (("without the driver", python), ("with the driver", driver)):

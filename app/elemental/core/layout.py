@@ -71,6 +71,7 @@ class Layouts:
         self._blocks: dict[str, tuple[str, list[Member]]] = {}
         self._constants: dict[str, int | float] = {}
         self._done: dict[tuple[str, str], np.dtype[np.void]] = {}
+        self._done_blocks: dict[str, np.dtype[np.void]] = {}
         self.files: dict[str, Path] = {}
         """File of each struct and block."""
         files = sorted(folder.glob("*.glsl"))
@@ -89,12 +90,18 @@ class Layouts:
 
     def block(self, name: str) -> np.dtype[np.void]:
         """Layout of a uniform block (std140) or of a buffer block's fixed members (std430)."""
-        rule, members = self._blocks[name]
-        return self._record(f"block {name}", members, rule).dtype
+        known = self._done_blocks.get(name)
+        if known is None:
+            rule, members = self._blocks[name]
+            known = self._done_blocks[name] = self._record(f"block {name}", members, rule).dtype
+        return known
 
     def struct(self, name: str, rule: str = "std430") -> np.dtype[np.void]:
         """Layout of a struct as an element of a buffer."""
-        return self._record(name, self._structs[name], rule).dtype
+        known = self._done.get((name, rule))
+        if known is None:
+            known = self._record(name, self._structs[name], rule).dtype
+        return known
 
     def constant(self, name: str) -> int | float:
         """Value of a ``const`` scalar or of a ``#define``."""
