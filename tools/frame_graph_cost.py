@@ -18,13 +18,12 @@ from statistics import median
 
 import numpy as np
 
+from driverless import without_driver
 from elemental.gpu.device import Device
 from elemental.gpu.formats import RGBA16F
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import Ref
 from elemental.gpu.shaders import Compute, Raster
-
-from driverless import without_driver
 
 BINDINGS = """
 uniform sampler2D u_a; uniform sampler2D u_b; uniform sampler2D u_c;

@@ -23,11 +23,10 @@ from statistics import median
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "app"))
 
+from driverless import without_driver  # noqa: E402
 from elemental.frame import Renderer  # noqa: E402
 from elemental.gpu.device import Device  # noqa: E402
 from elemental.session import Stage, Viewpoint, set_stage  # noqa: E402
-
-from driverless import without_driver  # noqa: E402
 
 SIZE = (64, 36)
 """Pixels: of no account to Python, and the warm-up is quick."""
@@ -63,7 +62,8 @@ def everything() -> str:
         parts.append(
             f'[[decals]]\nname = "{image}"\nposition = [{2 * n - 5}.0, 0.0, 0.5]\n'
             "direction = [0.0, -1.0, 0.0]\nup = [0.0, 0.0, -1.0]\nsize = [1.5, 1.5, 1.0]\n"
-            f'order = {n}\nparameters = {{ base_color_texture = "{content}/surfaces/{image}.png" }}\n'
+            f"order = {n}\n"
+            f'parameters = {{ base_color_texture = "{content}/surfaces/{image}.png" }}\n'
         )
     return "\n".join(parts)
 

@@ -65,35 +65,31 @@ struct ConeSample {
     float empty_exit; // > 0: nothing up to there
 };
 
-// Both levels around a fractional one with a single descent. p in finest voxels.
+// Both levels around a fractional one with a single descent. p in finest voxels. One place looks sides up
+// for each of the two: a software driver runs what is written for every ray, branches or not.
 ConeSample cone_sample(vec3 p, float lod, vec3 direction, vec3 inverse_direction, ViewOfVoxels view) {
     int mip = int(lod);
     int coarse = u_octree.leaf_level - mip - 1;
     uint shift = uint(mip + 2);  // a cell of `coarse` is 2^shift voxels wide
     uvec3 voxel = uvec3(p);
     int reached;
-    Node node = nodes[find_node(voxel >> shift, coarse, reached)];
-    if (!node_has_brick(node)) {
-        uint empty_shift = uint(u_octree.leaf_level - int(node.child) + 1);
+    Node node = find_node(voxel >> shift, coarse, reached);
+    uint reached_shift = uint(u_octree.leaf_level - reached + 1);
+    bool is_empty = !node_has_brick(node);
+    if (is_empty || (reached < coarse && node.child == NODE_HOLLOW)) {
+        uint empty_shift = is_empty ? uint(u_octree.leaf_level - int(node.child) + 1) : reached_shift;
         vec3 empty_cell = vec3(voxel >> empty_shift);
         float size = float(1u << empty_shift);
         return ConeSample(vec4(0.0), exit_distance(p, inverse_direction, direction, empty_cell, size));
     }
-    uint reached_shift = uint(u_octree.leaf_level - reached + 1);
-    if (reached < coarse && node.child == NODE_HOLLOW) {
-        vec3 hollow_cell = vec3(voxel >> reached_shift);
-        return ConeSample(vec4(0.0), exit_distance(p, inverse_direction, direction, hollow_cell, float(1u << reached_shift)));
-    }
     vec3 local = p / float(1u << reached_shift) - vec3(voxel >> reached_shift);
     bool dense_child = coarse < u_octree.top_level;
-    if (reached < coarse || (!dense_child && node.child == 0u)) {
-        // A leaf of a coarser region stands for its finer levels too.
-        return ConeSample(node_lookup(node, reached, local, view), 0.0);
-    }
-    float share = lod - float(mip);  // of the coarse level
+    // A leaf of a coarser region stands for its finer levels too.
+    bool is_leaf = reached < coarse || (!dense_child && node.child == 0u);
+    float share = is_leaf ? 1.0 : lod - float(mip);  // of the coarse level
     vec4 value = share > 0.0 ? share * sides_lookup(node, local, view) : vec4(0.0);
     uvec3 child_cell = voxel >> (shift - 1u);
-    if (!dense_child && node.child == NODE_HOLLOW) return ConeSample(value, 0.0);
+    if (is_leaf || (!dense_child && node.child == NODE_HOLLOW)) return ConeSample(value, 0.0);
     Node child = nodes[dense_child ? dense_node(coarse + 1, child_cell) : child_node(node.child, child_cell)];
     if (node_has_brick(child)) {
         vec3 child_local = local * 2.0 - vec3(child_cell & 1u);

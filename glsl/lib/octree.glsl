@@ -25,17 +25,25 @@ bool node_answers(Node node, int reached, int wanted) {
 }
 float node_scale(Node node) { return exp2(float(int(node.brick >> NODE_SCALE_SHIFT) - NODE_SCALE_BIAS)); }
 
-// Descends from the dense levels towards the node `cell` of `level`; `reached` is where it ended.
-uint find_node(uvec3 cell, int level, out int reached) {
+// Descends from the dense levels towards the node `cell` of `level`; it ends at `index`, at the level
+// `reached`.
+Node descend(uvec3 cell, int level, out uint index, out int reached) {
     reached = min(level, u_octree.top_level);
-    uint index = dense_node(reached, cell >> uint(level - reached));
+    index = dense_node(reached, cell >> uint(level - reached));
+    Node node = nodes[index];
     while (reached < level) {
-        uint tile = node_child(nodes[index]);
+        uint tile = node_child(node);
         if (tile == 0u) break;
         ++reached;
         index = child_node(tile, cell >> uint(level - reached));
+        node = nodes[index];
     }
-    return index;
+    return node;
+}
+
+Node find_node(uvec3 cell, int level, out int reached) {
+    uint index;
+    return descend(cell, level, index, reached);
 }
 
 // Unit position in the octree's cube.
@@ -51,7 +59,7 @@ NodeLocation octree_locate(vec3 p_ws, int wanted_level) {
     NodeLocation at;
     uint side = 1u << wanted_level;
     uvec3 cell = min(uvec3(max(p_oct, 0.0) * float(side)), uvec3(side - 1u));
-    at.node = find_node(cell, wanted_level, at.level);
+    descend(cell, wanted_level, at.node, at.level);
     at.cell = cell >> uint(wanted_level - at.level);
     at.local = p_oct * float(1u << at.level) - vec3(at.cell);
     return at;

@@ -34,7 +34,7 @@ void main() {
     vec3 color = BACKGROUND;
     for (int i = 0; i < WALK_STEPS_MAX && walk_inside(walk); ++i) {
         int reached;
-        Node node = nodes[find_node(walk.point >> 1u, walk.level, reached)];
+        Node node = find_node(walk.point >> 1u, walk.level, reached);
         uint held = node_answers(node, reached, walk.level) ? bricks[node_brick(node)].node >> BRICK_POINTS_SHIFT : 0u;
 #if REGIONS
         uvec3 odd = (walk.point >> uint(walk.level - reached)) & 1u;

@@ -19,7 +19,7 @@ void main() {
     vec3 color = BACKGROUND;
     for (int i = 0; i < WALK_STEPS_MAX && walk_inside(walk); ++i) {
         int reached;
-        Node node = nodes[find_node(walk.point >> 1u, walk.level, reached)];
+        Node node = find_node(walk.point >> 1u, walk.level, reached);
         if (node_answers(node, reached, walk.level)) {
             vec3 local = vec3((walk.point >> uint(walk.level - reached)) & 1u) * 0.5;
             vec4 value = node_lookup(node, reached, local, view);
