@@ -33,6 +33,7 @@ float largest(vec3 v) { return max(v.r, max(v.g, v.b)); }
 
 DirectLight direct_light(ShadingPoint p) {
     DirectLight sum = DirectLight(vec3(0.0), vec3(0.0));
+    light_footprint_m = 2.0 * view_ray().y * u_view.viewport_px.w * distance(u_view.eye_ws, p.p_ws);
     bool shines_through = SUBSURFACE_IS_USED && largest(p.subsurface_color) > 0.0;
     for (LightWalk walk = first_light(p.p_ws); walk.light < light_count(); next_light(walk)) {
         Light light = lights[walk.light];

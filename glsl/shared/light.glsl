@@ -17,9 +17,11 @@ struct Light {
     uint cascade_count;
     int profile;          // layer of the light profiles, or -1: the same in all directions
     float penumbra_radius;  // source_radius, or 0: hard shadows
-    float reserved0;
-    vec3 profile_axis_ws; // unit, across direction_ws: the profile's plane at 0 degrees
-    float reserved1;
+    int mask;             // layer of the light profiles that it shines through, or -1
+    vec3 profile_axis_ws; // unit, across direction_ws: the profile's plane at 0 degrees, the mask's right
+    float mask_scale;     // spot: 1 / tan of the outer angle; directional: 1 / width of the mask, m
+    vec2 mask_offset;     // in masks
+    vec2 reserved;
 };
 
 // Never empty: a scene without lights holds one of intensity 0.

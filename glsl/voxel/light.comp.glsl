@@ -64,6 +64,7 @@ void main() {
     float squared = dot(mean_normal, mean_normal);
     vec3 normal = mean_normal * inversesqrt(max(squared, 1e-6));
     float certainty = normal_certainty(squared);
+    light_footprint_m = spacing;
     vec4 albedo = unpackUnorm4x8(voxel.albedo);
     vec3 incident = direct_irradiance(p_ws, normal, certainty, spacing) * INVERSE_PI;
 #if SPREAD

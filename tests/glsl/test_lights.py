@@ -1,15 +1,18 @@
-"""Punctual lights against the formulas of KHR_lights_punctual."""
+"""Punctual lights against the formulas of KHR_lights_punctual, profiles and masks. SH-09"""
 
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
+from elemental.core.images import resized
 from elemental.core.layout import Block
 from elemental.gpu.device import Device
 from elemental.passes.light_pack import pack_lights
-from elemental.passes.light_profiles import LightProfiles, profiles_of
+from elemental.passes.light_profiles import MASK_SIZE, LightProfiles, profiles_of
 from elemental.scene.ies import LightProfile
-from elemental.scene.model import Light
+from elemental.scene.light_masks import drifted
+from elemental.scene.lights import Light, LightMask
 from glsl.harness import run_glsl
 
 
@@ -73,6 +76,67 @@ def test_a_spot_s_edges_are_its_two_angles(device: Device) -> None:
     np.testing.assert_allclose(got[:, 0], want, rtol=2e-4, atol=1e-5)
     np.testing.assert_allclose(got[angle < inner - 1e-6, 0], 2.0, rtol=1e-4)
     assert np.all(got[angle > outer + 1e-3] == 0.0)
+
+
+def picture(seed: int, side: int = 16) -> LightMask:
+    """Coloured noise."""
+    return LightMask("noise", np.random.default_rng(seed).random((side, side, 3)).astype("f4"))
+
+
+def looked_up(mask: LightMask, uv: np.ndarray) -> np.ndarray:
+    """Bilinear, repeating; u to the right, v down from the picture's top."""
+    pixels = resized(mask.pixels, *MASK_SIZE)
+    place = uv * MASK_SIZE[0] - 0.5
+    low = np.floor(place).astype(int)
+    t = (place - low)[:, :, None]
+    at = [
+        [pixels[(low[:, 1] + dy) % 256, (low[:, 0] + dx) % 256] for dx in (0, 1)] for dy in (0, 1)
+    ]
+    rows = [row[0] * (1 - t[:, 0]) + row[1] * t[:, 0] for row in at]
+    return rows[0] * (1 - t[:, 1]) + rows[1] * t[:, 1]
+
+
+@pytest.mark.parametrize("kind", ["spot", "directional"])
+def test_a_mask_is_projected_upright_for_who_looks_along_the_light(
+    device: Device, kind: str
+) -> None:
+    """Over a spot's cone, beyond it nothing; of a sun every `mask_size` m, moved as it scrolls."""
+    rng, outer = np.random.default_rng(2), 0.6
+    place = {"mask_size": 1.5, "mask_scroll": (0.25, -0.5)} if kind == "directional" else {}
+    source = light(kind, mask=picture(1), outer_angle=outer, inner_angle=outer, **place)
+    x, y = rng.uniform(-1.2, 1.2, (2, 800))  # right and up for who looks along -z
+    points = source.position + np.stack([x, y, np.full(800, -2.0)], axis=1)
+    if kind == "spot":
+        wide = 2.0 * np.tan(outer)
+        uv = np.stack([0.5 + 0.5 * x / wide, 0.5 - 0.5 * y / wide], axis=1)
+        plain = irradiance(device, light(kind, outer_angle=outer, inner_angle=outer), points)
+        got = irradiance(device, source, points)
+        assert (got[:, 0] == 0.0).any()
+    else:
+        source = drifted(source, 0.5)
+        uv = np.stack([x / 1.5 + 0.5 - 0.125, -y / 1.5 + 0.5 + 0.25], axis=1)
+        plain = np.tile([8.0, 4.0, 2.0], (800, 1))
+        got = irradiance(device, source, points)
+    np.testing.assert_allclose(got, plain * looked_up(source.mask, uv), rtol=0.01, atol=0.01)
+
+
+def test_a_wide_place_sees_the_masks_mean(device: Device) -> None:
+    """Voxels are lit by the mean of the mask over their width; here by all of it."""
+    mask = picture(3)
+    source = light("directional", mask=mask, mask_size=0.01)
+    packed = device.buffer("lights", pack_lights([source], [-1], [(0, 0)]))
+    profiles = LightProfiles(device)
+    profiles.update(profiles_of([source]))
+    points = np.random.default_rng(5).normal(size=(32, 3))
+    got = run_glsl(
+        device, ["lib/lights.glsl"],
+        "(light_footprint_m = 0.01, sample_light(lights[0], p).irradiance)",
+        {"p": points}, "vec3", reads={"Lights": packed, **profiles.reads()},
+    )  # fmt: skip
+    np.testing.assert_allclose(got, np.tile([8.0, 4.0, 2.0] * mask.pixels.mean((0, 1)), (32, 1)),
+                               rtol=0.01)  # fmt: skip
+    profiles.release()
+    packed.release()
 
 
 def test_a_profile_scales_the_intensity_by_its_direction(device: Device) -> None:

@@ -1,4 +1,4 @@
-"""Lights that are edited while the scene runs, and profiles in a frame."""
+"""Lights that are edited while the scene runs, profiles and masks in a frame. SH-09"""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from elemental.core.errors import InputError
 from elemental.frame import Renderer
 from elemental.scene.blackbody import blackbody_color
 from elemental.scene.ies import LightProfile
+from elemental.scene.lights import LightMask
 from elemental.scene.model import Light, Scene
 from gpu.rig import IDENTITY, at, camera, mesh, scene, vector
 from shapes import box, quad
@@ -39,6 +40,11 @@ POLES, SIDES = np.radians([0.0, 180.0]), np.radians([0.0, 89.0, 91.0, 180.0])
 HALF = LightProfile("half", POLES, SIDES, np.array([[9.0] * 2, [9.0] * 2, [0.0] * 2, [0.0] * 2]))
 """Light to one side only."""
 
+STRIPES = LightMask("stripes", np.tile(np.array([[[1.0]], [[0.25]]], np.float32), (32, 64, 3)))
+"""Fine ones, along the mask's width; their mean is 0.625."""
+
+HALVES = LightMask("halves", np.repeat(np.array([[[1.0]], [[0.25]]], np.float32), 3, axis=2))
+
 CHANGES: dict[str, dict[str, Any]] = {
     "temperature": {"temperature": 2400.0},
     "brighter": {"intensity": 9.0},
@@ -46,6 +52,7 @@ CHANGES: dict[str, dict[str, Any]] = {
     "larger": {"source_radius": 0.3},
     "kind": {"kind": "spot", "outer_angle": 0.6},
     "profile": {"profile": HALF},
+    "mask": {"kind": "spot", "outer_angle": 0.6, "mask": STRIPES},
 }
 
 
@@ -89,6 +96,41 @@ def test_an_edited_light_lights_the_next_frame(renderers: Any, change: str) -> N
     np.testing.assert_array_equal(got, want)
     if change != "larger":  # which only highlights show
         assert np.abs(got - before).max() > 0.05
+
+
+def test_floor_and_voxels_under_a_mask_get_its_mean(renderers: Any) -> None:
+    """A sun through stripes of a quarter and all of the light, finer than pixels and voxels."""
+    light = Light("sun", "directional", vector(1, 1, 1), 2.0, vector(0, 0, 0), vector(0, -1, 0))
+    world = scene((mesh(quad(6.0)), IDENTITY), (mesh(box((0.1, 2, 3))), at(-2.0, 1, 0)))
+    bare, masked = (replace(light, mask=mask, mask_size=0.8) for mask in (None, STRIPES))
+    for view, spread in (("direct", 0.05), ("diffuse_gi", 0.02)):
+        seen = []
+        for lamp in (bare, masked):
+            world.lights = [lamp]
+            seen.append(picture(renderers(world, **{"gi.bounces": 1}), view)[0][..., 0])
+        lit = seen[0] > 0.02 * seen[0].max()
+        share = seen[1][lit] / seen[0][lit]
+        assert np.mean(seen[1][lit]) == pytest.approx(0.625 * np.mean(seen[0][lit]), rel=0.03)
+        assert np.std(share) < spread
+
+
+def test_a_mask_that_scrolls_is_elsewhere_and_lights_voxels_anew(renderers: Any) -> None:
+    """After a whole mask all is as before; with time standing still nothing is done."""
+    world = court()
+    world.lights = [
+        replace(world.lights[0], kind="spot", outer_angle=0.6, mask=HALVES, mask_scroll=(0.0, 0.25))
+    ]
+    made = renderers(world, **{"gi.bounces": 1})
+    seen = []
+    for frame, time_s in enumerate((0.0, 2.0, 2.0, 4.0)):
+        shown = made.render(EYE, time_s, frame, "scene_color")
+        made.device.finish()
+        relit = "light voxels" in [timing.name for timing in made.device.timings]
+        assert relit is (frame != 2)
+        seen.append(made.read(shown)[..., :3])
+    assert np.abs(seen[1] - seen[0]).max() > 0.05
+    np.testing.assert_array_equal(seen[2], seen[1])
+    np.testing.assert_array_equal(seen[3], seen[0])
 
 
 def test_what_no_light_is_is_refused_and_the_old_ones_stay(renderers: Any) -> None:

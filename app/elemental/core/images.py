@@ -113,6 +113,13 @@ def write_exr(path: Path, rgb32f: npt.NDArray[np.float32]) -> None:
         OpenEXR.File(header, channels).write(str(temporary))
 
 
+def resized(pixels: npt.NDArray[np.float32], width: int, height: int) -> npt.NDArray[np.float32]:
+    """(H, W, 3) resampled to (height, width, 3): means where it gets smaller."""
+    kind = PIL.Image.Resampling.BOX if pixels.shape[0] >= height else PIL.Image.Resampling.BILINEAR
+    planes = [PIL.Image.fromarray(pixels[..., c]).resize((width, height), kind) for c in range(3)]
+    return np.stack([np.asarray(plane) for plane in planes], axis=-1)
+
+
 def _unreadable(error: Exception, kinds: str) -> str:
     """Why Pillow could not decode an image, without its own words for our buffers."""
     if isinstance(error, PIL.UnidentifiedImageError):

@@ -31,6 +31,7 @@ from elemental.passes.voxel.grid import Grid
 from elemental.passes.voxel.lighting import VoxelLighting
 from elemental.scene.deform import posed
 from elemental.scene.evaluate import LastPose, Pose
+from elemental.scene.light_masks import MaskDrift
 from elemental.scene.lights import checked
 from elemental.scene.model import Camera, Light, Material, Region, Scene
 from elemental.scene.volumes import blend
@@ -84,6 +85,7 @@ class Renderer:
         self.size = size
         self._area_lights = AreaLightBlock(scene, settings["gi.area_lights"])
         self._last_pose = LastPose()
+        self._mask_drift = MaskDrift()
         self._post = PostHistory(device, settings, scene.folder)
         self._meshes = GpuScene(device, scene, self._area_lights.lights)
         self._decals = Decals(device, scene, self._meshes)
@@ -157,7 +159,7 @@ class Renderer:
         resolution = self.settings["gi.resolution"]
         return Grid.fit(self._meshes.bounds, resolution, self.scene.regions)
 
-    def _move(self, time_s: float, pose: Pose | None) -> list[Light]:
+    def _move(self, time_s: float, pose: Pose | None) -> Sequence[Light]:
         """Bring the scene to its pose at a time, or to the given one. Returns its lights."""
         if pose is None:
             pose = self._last_pose.at(self.scene, time_s)
@@ -165,10 +167,11 @@ class Renderer:
             self._fit_emission()
         if self._decals.voxels is not None and self._decals.voxels.changed():
             self.invalidate("geometry")
-        if pose is None:
-            return self.scene.lights
-        self._area_lights.follow(pose)
-        return pose.lights
+        lights = self.scene.lights
+        if pose is not None:
+            self._area_lights.follow(pose)
+            lights = pose.lights
+        return self._mask_drift.at(lights, time_s)
 
     def render(
         self,

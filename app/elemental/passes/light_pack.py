@@ -16,6 +16,8 @@ KINDS = ("directional", "point", "spot")
 """In the order of LIGHT_*."""
 CONE_MARGIN = 1e-3
 """Least difference of a spot's cone cosines, as KHR_lights_punctual recommends."""
+LEAST_MASK_ANGLE, WIDEST_MASK_ANGLE = math.radians(0.1), math.radians(85.0)
+"""Half angles of a spot between which its mask fills the cone: a plane can't be wider."""
 NO_AXIS = np.zeros(3, np.float32)
 EVERYWHERE = -1.0
 """Radius in LightBounds of a light that reaches everywhere."""
@@ -31,6 +33,13 @@ def reach(light: Light, cutoff: float) -> float:
     if math.isfinite(light.range):
         return light.range
     return math.sqrt(float(light.strength.max()) / cutoff)
+
+
+def mask_scale(light: Light) -> float:
+    """Of a spot 1 / tan of the outer angle, of a sun its masks a metre."""
+    if light.kind == "directional":
+        return 1.0 / light.mask_size
+    return 1.0 / math.tan(min(max(light.outer_angle, LEAST_MASK_ANGLE), WIDEST_MASK_ANGLE))
 
 
 def light_bounds(lights: Sequence[Light], ranges: Sequence[float]) -> Array:
@@ -93,5 +102,10 @@ def pack_lights(
         first_cascade=[first for first, _ in cascades],
         cascade_count=[count for _, count in cascades],
         profile=[layers.get(id(light.profile), -1) for light in lights],
-        profile_axis_ws=[light.profile_axis if light.profile else NO_AXIS for light in lights],
+        mask=[layers.get(id(light.mask), -1) for light in lights],
+        profile_axis_ws=[
+            light.profile_axis if light.profile or light.mask else NO_AXIS for light in lights
+        ],
+        mask_scale=[mask_scale(light) for light in lights],
+        mask_offset=[light.mask_offset for light in lights],
     )

@@ -12,12 +12,11 @@ from elemental.core.layout import layouts, pack_array
 from elemental.passes import shadow_fit
 from elemental.passes.camera_view import far_plane
 from elemental.passes.light_pack import light_bounds, pack_lights, reach
-from elemental.passes.light_profiles import profiles_of
+from elemental.passes.light_profiles import Shape, profiles_of
 from elemental.passes.scene_pack import Array
 from elemental.passes.shadow_budget import FACES, ShadowBudget, Shares
 from elemental.passes.shadow_fit import Bounds, FittedView, ViewFrustum
 from elemental.passes.shadow_tiles import Tile, TilePool
-from elemental.scene.ies import LightProfile
 from elemental.scene.model import Camera, Light
 
 CULLED_FROM = 5
@@ -57,7 +56,7 @@ class ShadowPlan:
     fixed: int
     layers: int
     unshadowed: int
-    profiles: list[LightProfile]
+    profiles: list[Shape]
 
 
 @dataclass(frozen=True)
@@ -93,7 +92,7 @@ class ShadowPlanner:
     _pool: TilePool = field(init=False)
     _lights: list[Light] = field(default_factory=list)
     _reaches: list[float] = field(default_factory=list)
-    _profiles: list[LightProfile] = field(default_factory=list)
+    _profiles: list[Shape] = field(default_factory=list)
     _spheres: Array = field(default_factory=lambda: light_bounds([], []))
     _fitted: dict[int, tuple[Hashable, list[FittedView]]] = field(default_factory=dict)
     _fixed: FixedViews | None = None

@@ -16,6 +16,7 @@ from elemental.scene.gltf import load_gltf
 from elemental.scene.gltf.animations import EVERY
 from elemental.scene.ies import read_ies
 from elemental.scene.light_changes import change_lights
+from elemental.scene.light_masks import read_mask
 from elemental.scene.model import (
     Camera,
     CameraPath,
@@ -251,6 +252,10 @@ def _light(table: LightTable, index: int, path: Path) -> Light:
     if table.ies is not None:
         with named_by(path, f"lights[{index}].ies", table.ies):
             profile = read_ies(path.parent / table.ies)
+    mask = None
+    if table.mask is not None:
+        with named_by(path, f"lights[{index}].mask", table.mask):
+            mask = read_mask(path.parent / table.mask)
     away = [0.0, 0.0, -1.0] if profile is None else [0.0, -1.0, 0.0]
     light = Light(
         name=table.name or f"{table.kind}{index}",
@@ -267,6 +272,9 @@ def _light(table: LightTable, index: int, path: Path) -> Light:
         temperature=table.temperature,
         profile=profile,
         roll=math.radians(table.roll_deg),
+        mask=mask,
+        mask_size=table.mask_size,
+        mask_scroll=(table.mask_scroll[0], table.mask_scroll[1]),
     )
     if table.lumen is not None:
         light.intensity = table.lumen / solid_angle(light)

@@ -16,6 +16,15 @@ from elemental.scene.ies import LightProfile
 LightKind: TypeAlias = Literal["directional", "point", "spot"]
 
 
+@dataclass(frozen=True, eq=False)
+class LightMask:
+    """A picture that a light shines through: ``pixels`` (H, W, 3) float32, the share of the light
+    of each primary, row 0 on top."""
+
+    name: str
+    pixels: FloatArray
+
+
 @dataclass
 class Light:
     """A punctual light (KHR_lights_punctual). One that changes is replaced, not written to.
@@ -28,6 +37,11 @@ class Light:
     `color` is linear; that of a black body of `temperature` K multiplies it, with a luminance of 1.
     `intensity` is then the peak of the `profile`, whose plane at 0° is turned by `roll` rad about
     the direction: see `profile_axis`.
+
+    A spot or directional light may shine through a `mask`, upright for who looks along the
+    direction, and turned by `roll`. Of a spot it fills the outer cone; of a sun it repeats every
+    `mask_size` m around `position`. `mask_scroll` are its widths and heights a second to the right
+    and down, `mask_offset` where that has brought it.
     """
 
     name: str
@@ -45,6 +59,10 @@ class Light:
     temperature: float | None = None
     profile: LightProfile | None = None
     roll: float = 0.0
+    mask: LightMask | None = None
+    mask_size: float = 1.0
+    mask_scroll: tuple[float, float] = (0.0, 0.0)
+    mask_offset: tuple[float, float] = (0.0, 0.0)
 
     @property
     def strength(self) -> FloatArray:
@@ -56,7 +74,8 @@ class Light:
 
     @property
     def profile_axis(self) -> FloatArray:
-        """(3,) float32 unit, across the direction: where the profile's plane at 0° lies. Without a
+        """(3,) float32 unit, across the direction: where the profile's plane at 0° lies, and the
+        mask's right. Without a
         roll that is towards +x of a light that points straight down, else level and to the right
         of who looks along the direction. [inferred: no file says how a luminaire is hung]"""
         direction = self.direction.astype(np.float64)

@@ -12,7 +12,7 @@ import tomlkit
 from elemental.core.paths import content_root, is_file
 from elemental.scene.named_files import FILE_KEYS
 
-ALWAYS_FILES = frozenset({"file", "ies"})
+ALWAYS_FILES = frozenset({"file", "ies", "mask"})
 """Keys outside the settings that name a file whether it is there or not."""
 NEVER_FILES = frozenset({"name", "model", "light"})
 """Keys whose texts are names of things."""

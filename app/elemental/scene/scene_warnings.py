@@ -9,6 +9,7 @@ from elemental.scene.scene_file import SceneFile
 from elemental.scene.tables.lights import LightTable
 
 CONE_KEYS = frozenset({"inner_angle_deg", "outer_angle_deg"})
+MASK_KEYS = frozenset({"mask_size", "mask_scroll"})
 PLACE_KEYS = frozenset({"position", "range"})
 
 
@@ -23,12 +24,18 @@ def idle_keys(file: SceneFile, path: Path) -> list[str]:
 
 def _idle_keys_of(table: LightTable) -> dict[str, str]:
     idle: dict[str, str] = {}
-    if table.ies is None:
-        idle["roll_deg"] = "there is no ies file to turn"
+    if table.ies is None and table.mask is None:
+        idle["roll_deg"] = "there is no ies file and no mask to turn"
+    if table.mask is None:
+        idle |= dict.fromkeys(sorted(MASK_KEYS), "there is no mask")
+    elif table.kind == "spot":
+        idle["mask_size"] = "a spot light's mask fills its cone"
     if table.kind != "spot":
         idle |= dict.fromkeys(sorted(CONE_KEYS), f"a {table.kind} light has no cone")
     if table.kind == "directional":
         idle |= dict.fromkeys(sorted(PLACE_KEYS), "a directional light is everywhere")
+        if table.mask is not None:
+            del idle["position"]
     if table.kind == "point" and table.ies is None:
         idle["direction"] = "a point light without ies shines all round"
     return {key: reason for key, reason in idle.items() if key in table.model_fields_set}

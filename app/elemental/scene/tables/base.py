@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field
 Number = Annotated[float, Field(ge=-1e12, le=1e12)]
 Positive = Annotated[float, Field(gt=0.0, le=1e12)]
 NonNegative = Annotated[float, Field(ge=0.0, le=1e12)]
+Vec2 = Annotated[list[Number], Field(min_length=2, max_length=2)]
 Vec3 = Annotated[list[Number], Field(min_length=3, max_length=3)]
 Color = Annotated[list[NonNegative], Field(min_length=3, max_length=3)]
 HalfAngle = Annotated[float, Field(gt=0.0, le=90.0)]

@@ -14,6 +14,7 @@ from elemental.scene.tables.base import (
     NonNegative,
     Positive,
     Table,
+    Vec2,
     Vec3,
 )
 
@@ -34,6 +35,9 @@ class LightTable(Table):
     outer_angle_deg: HalfAngle = 45.0
     source_radius: NonNegative = 0.0
     casts_shadow: bool = True
+    mask: Name | None = None
+    mask_size: Positive = 1.0
+    mask_scroll: Vec2 = [0.0, 0.0]
 
     @model_validator(mode="after")
     def _has_its_place(self) -> LightTable:
@@ -46,6 +50,8 @@ class LightTable(Table):
         for key in ("lumen", "ies"):
             if self.kind == "directional" and getattr(self, key) is not None:
                 raise ValueError(f"a directional light has no {key}; its intensity is in lux")
+        if self.kind == "point" and self.mask is not None:
+            raise ValueError("a point light has no mask; a spot or directional light may have one")
         if self.lumen is not None and self.intensity is not None:
             raise ValueError("intensity and lumen say the same thing; give one")
         if self.kind == "spot" and self.inner_angle_deg > self.outer_angle_deg:
