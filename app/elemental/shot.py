@@ -112,6 +112,7 @@ def _shoot_panel(shot: Shot, stage: Stage) -> None:
         screen.draw()
         desk.device.finish()
         if is_sequence or index == shot.frames - 1:
+            screen.finish()
             save_picture(frame_file(shot.output, index), screen.read(), False)
     say([*stage.scene.warnings, *desk.renderer.problems()], stage.scene.notes)
     print(frame_file(shot.output, shot.frames - 1))

@@ -30,11 +30,18 @@ class Robot:
     """Hands, on a desk with the scene of ``path``."""
 
     def __init__(
-        self, device: Device, path: Path, *words: str, page: str = "Settings", size: Any = SIZE
+        self,
+        device: Device,
+        path: Path,
+        *words: str,
+        page: str = "Settings",
+        size: Any = SIZE,
+        scale: float = 1.0,
     ) -> None:
         assignments = [*QUICK, *words]
         stage = set_stage(str(path), assignments, Viewpoint(), size)
-        self.screen = HeadlessDesk(device, stage, Words(str(path), assignments), size, records=True)
+        again = Words(str(path), assignments)
+        self.screen = HeadlessDesk(device, stage, again, size, records=True, scale=scale)
         self.desk: Desk = self.screen.desk
         self.desk.clock.paused = True
         self.page = page

@@ -21,13 +21,13 @@ Hands = Callable[..., Robot]
 def test_the_timeline_has_a_row_for_each_pass(hands: Hands, scene_file: Path) -> None:
     robot = hands(scene_file, page="Timeline")
     robot.frames(4)
-    names = list(robot.desk.averages.values)
-    assert robot.sees(names[1])
+    names = list(robot.desk.times.gpu.values)
+    assert robot.sees(names[0])
     assert robot.sees("strip")
 
 
 def test_the_graph_shows_passes_and_leads_to_a_target(hands: Hands, scene_file: Path) -> None:
-    robot = hands(scene_file, page="Graph")
+    robot = hands(scene_file, page="Graph", size=(1200, 800))
     robot.frames(5)
     report = robot.desk.observers.report
     assert report is not None

@@ -11,16 +11,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from elemental.core.errors import InputError
 from elemental.frame import VIEWS, Frame, Renderer
 from elemental.gpu.device import Device
 from elemental.gpu.resources import Texture
+from elemental.gpu.screen import Area
 from elemental.scene.model import Camera
 from elemental.session import Stage
 from elemental.ui import actions, reopening, theme
-from elemental.ui.averages import Averages
 from elemental.ui.clock import SceneClock
 from elemental.ui.editor import Applied, document_of
 from elemental.ui.fly_camera import FlyCamera
@@ -28,6 +26,7 @@ from elemental.ui.gui import Gui
 from elemental.ui.images import ImageReader
 from elemental.ui.in_view import begin_gizmo, gizmo_has_mouse
 from elemental.ui.log import Kind, Log
+from elemental.ui.measured import Measured
 from elemental.ui.observers import Observers
 from elemental.ui.pages import PageState, menu_of, overlays, pages_of
 from elemental.ui.panel.file_dialog import FileDialog
@@ -45,7 +44,6 @@ if TYPE_CHECKING:
 
 MESSAGE_S = 4.0
 """How long a message stays."""
-HISTORY_FRAMES = 240
 
 
 @dataclass(frozen=True)
@@ -82,8 +80,7 @@ class Desk:
         self.rides = stage.camera_moves
         """Whether the scene moves the camera, until the user does."""
         self.clock = SceneClock()
-        self.averages, self.cpu_averages = Averages(), Averages()
-        """GPU and CPU times by pass."""
+        self.times = Measured()
         self.view = "final"
         self.drawn = 0
         self.shows_panel, self.shows_hud = preferences.shows_panel, preferences.shows_hud
@@ -96,8 +93,6 @@ class Desk:
         self.observers = Observers(device)
         self.images = ImageReader(device.largest_texture_px)
         self.thumbnails = Thumbnails(device)
-        self.history = np.zeros(HISTORY_FRAMES, np.float32)
-        """Times from frame to frame, oldest first, ms."""
         self.dialog: FileDialog | None = None
         self.window_acts: Callable[[str], None] = lambda _action: None
         """Does what only a window can."""
@@ -107,9 +102,10 @@ class Desk:
         self._asked: list[str] = []
         self.place: Rect = (0.0, 0.0, *size)
         """Of the picture on the window, px from the top left corner."""
-        self.wall_s = self.cpu_ms = 0.0
-        self.gui_ms = self.layout_ms = 0.0
-        """Time of Python and of the driver's calls for the panel; for its widgets alone."""
+        self.cpu_ms = self.layout_ms = 0.0
+        """Time of Python and of the driver's calls for the frame; for the panel's widgets."""
+        self._began: float | None = None
+        """When the last frame was begun."""
         self._message, self._message_until = "", 0.0
         self._sure_until = 0.0
         gui.scale = preferences.scale
@@ -157,6 +153,10 @@ class Desk:
         ``seconds`` have passed since the one before, in the user's time.
         """
         began = time.perf_counter()
+        self.times.update(
+            self.device.timings, None if self._began is None else 1e3 * (began - self._began)
+        )
+        self._began = began
         self._follow()
         has_gui = self._has_gui
         area = (0, 0, *size)
@@ -180,17 +180,32 @@ class Desk:
             self.fly.camera(), self.clock.time_s, self.drawn, self.view
         )
         self.observers.after_frame()
-        if area[2:] != size:
-            self.device.clear_screen(theme.BACKDROP, self.onto)
-        present(self.device, self.frame, area, self.onto)
+        self._show(area, size)
         presented = time.perf_counter()
         if has_gui:
             self.gui.draw()
         done = time.perf_counter()
         self.cpu_ms = 1e3 * (presented - drawing + settled - laid_out)
         self.layout_ms = 1e3 * (laid_out - began)
-        self.gui_ms = 1e3 * (laid_out - began + done - presented)
+        self.times.panel_ms = 1e3 * (laid_out - began + done - presented)
         self.drawn += 1
+
+    def tell(self, size: tuple[int, int]) -> None:
+        """The panel once more around the newest frame, with what is only known after it."""
+        self.device.finish()
+        if self._began is not None:
+            self.times.update(self.device.timings, 1e3 * (time.perf_counter() - self._began))
+        self._follow()
+        self.observers.catch_up()
+        self._show(self._lay_out(size, 0.0), size)
+        self.gui.draw()
+
+    def _show(self, area: Area, size: tuple[int, int]) -> None:
+        """The newest frame in its place."""
+        assert self.frame is not None
+        if area[2:] != size:
+            self.device.clear_screen(theme.BACKDROP, self.onto)
+        present(self.device, self.frame, area, self.onto)
 
     def _take_over(self) -> None:
         """Bring the renderer up to what was done in the panel, by menus, from elsewhere."""
@@ -214,15 +229,8 @@ class Desk:
         shows = self.shows_panel or self.shows_hud or self.shows_help or self.shows_pixel
         return bool(shows or self.message or self.dialog)
 
-    def _lay_out(self, size: tuple[int, int], seconds: float) -> tuple[int, int, int, int]:
+    def _lay_out(self, size: tuple[int, int], seconds: float) -> Area:
         """Make the widgets. Returns the picture's area, from the bottom left corner."""
-        timings = self.device.timings
-        gpu_ms = [(timing.name, timing.gpu_ms) for timing in timings]
-        self.averages.update([("frame", 1e3 * seconds), *gpu_ms], seconds)
-        self.cpu_averages.update([(timing.name, timing.cpu_ms) for timing in timings], seconds)
-        self.history[:-1] = self.history[1:]
-        self.history[-1] = 1e3 * seconds
-        self.wall_s = seconds
         place: Rect = (0.0, 0.0, *size)
         while True:
             self.gui.begin(size, seconds)

@@ -14,6 +14,8 @@ from elemental.ui.desk import Desk, Words
 from elemental.ui.gui import HeadlessGui
 from elemental.ui.preferences import Preferences
 
+SETTLING_FRAMES = 3
+"""At most so many more show a target: which ones there are, and its room, come to be known."""
 FRAME_S = 1 / 60
 """The user's time from one frame to the next."""
 
@@ -41,6 +43,14 @@ class HeadlessDesk:
     def draw(self) -> None:
         """One frame at the clock's time."""
         self.desk.draw(self.size, FRAME_S)
+
+    def finish(self) -> None:
+        """Show what is only known after a frame: its times, messages, a target's picture."""
+        for _ in range(SETTLING_FRAMES):
+            if not self.desk.observers.lacks_picture:
+                break
+            self.draw()
+        self.desk.tell(self.size)
 
     def read(self) -> npt.NDArray[Any]:
         """(H, W, 4) uint8 display codes of the last frame, row 0 on top."""

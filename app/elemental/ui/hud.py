@@ -38,8 +38,8 @@ class Figures:
     size: tuple[int, int]
     voxels: int
     """Lattice points a side of the octree, 0 without indirect light."""
-    frame_ms: float
-    """From one picture to the next."""
+    frame_ms: float | None
+    """From one picture to the next; None before the second."""
     cpu_ms: float
     """Spent in Python and the driver's calls for the frame."""
     passes: Mapping[str, float]
@@ -62,10 +62,9 @@ def draw_hud(figures: Figures, place: Rect, fonts: Fonts) -> None:
     voxels = f"  {figures.voxels}³ voxels" if figures.voxels else ""
     imgui.text_unformatted(f"{figures.scene}  {width}x{height}{voxels}  {figures.view}")
     _colored(theme.MUTED, figures.driver)
-    rate = 1e3 / figures.frame_ms if figures.frame_ms > 0 else 0.0
-    imgui.text_unformatted(
-        f"{rate:.1f} frames/s  {figures.frame_ms:.2f} ms  CPU {figures.cpu_ms:.2f} ms"
-    )
+    frame_ms = figures.frame_ms
+    rate = f"{1e3 / frame_ms:.1f} frames/s  {frame_ms:.2f} ms  " if frame_ms else ""
+    imgui.text_unformatted(f"{rate}CPU {figures.cpu_ms:.2f} ms")
     paused = "  paused" if figures.paused else ""
     _colored(theme.MUTED, f"time {figures.time_s:.2f} s{paused}  speed {figures.speed:.3g} m/s")
     for problem in figures.problems:

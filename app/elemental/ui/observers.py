@@ -47,6 +47,8 @@ class Observers:
         self.pixel = PixelProbe(device, PIXEL_TARGETS)
         self.eye: EyeReading | None = None
         self.report: GraphReport | None = None
+        self._looks = False
+        """Whether a page looked at a target of the last frame."""
         self._wants: set[str] = set()
         self._asked_frames = 0
         """For how many frames in a row the report has been wanted."""
@@ -79,7 +81,21 @@ class Observers:
             known = self.report is not None and self.report.frame == newest.frame
             if not known or self._asked_frames % REPORT_FRAMES == FIRST_FRAMES:
                 self.report = newest.with_timings(self.device.timings)
+        self._looks = "buffer" in self._wants
         self._wants.clear()
+
+    @property
+    def lacks_picture(self) -> bool:
+        """Whether a page looks at a target whose picture is not there in the size of its place."""
+        inspector, picture = self.inspector, self.inspector.picture
+        return self._looks and (
+            inspector.look is None or picture is None or picture.size != inspector.size
+        )
+
+    def catch_up(self) -> None:
+        """Take what arrived since, once the GPU is done."""
+        if self.report is not None:
+            self.report = self.report.with_timings(self.device.timings)
 
     def release(self) -> None:
         """Free everything on the device."""

@@ -25,7 +25,7 @@ from elemental.ui.panel.scene import Selection, scene_page
 from elemental.ui.panel.sequence import DEFAULT, sequence_page
 from elemental.ui.panel.settings import settings_page
 from elemental.ui.panel.textures import Images
-from elemental.ui.panel.timeline import timeline_page
+from elemental.ui.panel.timeline import ms_text, timeline_page
 from elemental.ui.panel.volumes import VolumeView, volumes_page
 from elemental.ui.sequence_job import SequenceWords
 from elemental.ui.widgets import Widgets
@@ -88,10 +88,7 @@ def pages_of(desk: Desk) -> list[Page]:
         state.sequence = sequence_page(w, state.sequence, desk.job, desk.menu_act)
 
     def timeline(w: Widgets) -> None:
-        gpu_ms = dict(desk.averages.values)
-        frame_ms = gpu_ms.pop("frame", 0.0)
-        cpu_ms = desk.cpu_averages.values
-        timeline_page(w, gpu_ms, cpu_ms, frame_ms, desk.gui_ms, desk.history[-desk.drawn :])
+        timeline_page(w, desk.times.times())
 
     def graph(w: Widgets) -> None:
         observers.want("report")
@@ -141,7 +138,7 @@ def images_of(desk: Desk) -> Images:
 def menu_of(desk: Desk, w: Widgets) -> None:
     """The menu bar over a desk."""
     document, workspace = desk.document, desk.workspace
-    frame_ms = desk.averages.values.get("frame", 0.0)
+    frame_ms = desk.times.frame_ms
     held = sum(desk.device.bytes().values()) / 2**20
     state = MenuState(
         scene=desk.stage.scene.name,
@@ -154,7 +151,7 @@ def menu_of(desk: Desk, w: Widgets) -> None:
         hidden=frozenset(workspace.hidden),
         scale=desk.gui.scale,
         scales=SCALES,
-        figures=f"{frame_ms:.1f} ms    {held:,.0f} MiB",
+        figures=f"{ms_text(frame_ms)}    {held:,.0f} MiB",
     )
     menu_bar(w, state, desk.menu_act)
 
@@ -201,7 +198,7 @@ def _pixel_in_view(desk: Desk, place: Rect) -> None:
 
 def figures_of(desk: Desk) -> Figures:
     """What the HUD tells of the last frame."""
-    passes, settings = dict(desk.averages.values), desk.renderer.settings
+    settings = desk.renderer.settings
     frame = desk.frame
     return Figures(
         scene=desk.stage.scene.name,
@@ -209,9 +206,9 @@ def figures_of(desk: Desk) -> Figures:
         view=desk.view,
         size=desk.renderer.size,
         voxels=settings["gi.resolution"] if settings["gi.enabled"] else 0,
-        frame_ms=passes.pop("frame", 0.0),
+        frame_ms=desk.times.frame_ms,
         cpu_ms=desk.cpu_ms,
-        passes=passes,
+        passes=dict(desk.times.gpu.values),
         counters=frame.counters if frame is not None else {},
         bytes=desk.device.bytes(),
         time_s=desk.clock.time_s,

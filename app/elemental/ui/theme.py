@@ -41,7 +41,7 @@ _COLORS: dict[str, tuple[Rgb, float]] = {
     "title_bg_collapsed": (BACKDROP, 1.0), "menu_bar_bg": (BACKDROP, 1.0),
     "scrollbar_bg": (_PANEL, 0.0), "scrollbar_grab": (_RAISED, 1.0),
     "scrollbar_grab_hovered": (_LIT, 1.0), "scrollbar_grab_active": (ACCENT, 1.0),
-    "check_mark": (ACCENT, 1.0), "slider_grab": (_GRAB, 1.0), "slider_grab_active": (ACCENT, 1.0),
+    "check_mark": (ACCENT, 1.0), "slider_grab": (_GRAB, 0.75), "slider_grab_active": (ACCENT, 1.0),
     "button": (_FIELD, 1.0), "button_hovered": (_RAISED, 1.0), "button_active": (_LIT, 1.0),
     "header": (_FIELD, 0.75), "header_hovered": (_RAISED, 1.0), "header_active": (_LIT, 1.0),
     "separator": (_EDGE, 1.0), "separator_hovered": (ACCENT, 0.6), "separator_active": (ACCENT, 1),

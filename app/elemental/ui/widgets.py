@@ -15,12 +15,10 @@ from imgui_bundle import imgui
 
 from elemental.picture import decode_srgb, encode_srgb
 from elemental.settings import Setting
-from elemental.ui import icons, theme
+from elemental.ui import icons
+from elemental.ui.lines import Lines
 from elemental.ui.theme import Fonts
-from elemental.ui.words import Words
 
-LABEL_SHARE = 0.44
-"""Of a row's width, for its label."""
 LOGARITHMIC_SPAN = 100.0
 """A range that is wider than this is slid over by factors, not by differences."""
 LARGEST_SPAN = 1e6
@@ -48,7 +46,7 @@ class Browsing(NamedTuple):
     """From which the value counts; None: that of the settings' names."""
 
 
-class Widgets(Words):
+class Widgets(Lines):
     """ImGui's widgets in the panel's manner."""
 
     def __init__(self, fonts: Fonts, records: bool = False) -> None:
@@ -58,7 +56,6 @@ class Widgets(Words):
         self.browsed: dict[str, str] = {}
         """Files that were chosen for rows, until these take them."""
         self._typed: dict[int, str] = {}
-        self._row_end = 0.0
 
     def button(self, label: str, name: str = "", enabled: bool = True, help: str = "") -> bool:
         """A button; ``name`` is what it is recorded as where the label is an icon."""
@@ -105,37 +102,7 @@ class Widgets(Words):
         self.note(title.partition("###")[2] or title)
         return shows
 
-    # Rows of a label and a value ---------------------------------------------------------------
-
-    def row(self, label: str, help: str = "", changed: bool = False) -> None:
-        """The left part of a row; the value's widget follows, as wide as the rest."""
-        width = imgui.get_content_region_avail().x
-        left = imgui.get_cursor_pos_x()
-        corner = imgui.get_cursor_screen_pos()
-        self._row_end = left + width
-        value_x = LABEL_SHARE * width
-        gap = imgui.get_style().item_inner_spacing.x
-        edge = imgui.ImVec2(corner.x + value_x - gap, corner.y + imgui.get_frame_height())
-        imgui.push_clip_rect(corner, edge, True)
-        imgui.align_text_to_frame_padding()
-        self.text(label, theme.ACCENT if changed else None)
-        imgui.pop_clip_rect()
-        self.tooltip(help)
-        imgui.same_line(left + value_x)
-        imgui.set_next_item_width(-self.reset_width())
-
-    def reset(self, name: str, changed: bool, default: str) -> bool:
-        """The right end of a row: a button back to the default where the value is another."""
-        if not changed:
-            return False
-        imgui.same_line(self._row_end - self.reset_width())
-        imgui.push_style_color(imgui.Col_.button.value, theme.color(theme.BACKDROP, 0.0))
-        imgui.push_style_color(imgui.Col_.text.value, theme.color(theme.ACCENT))
-        pressed = imgui.button(f"{icons.RESET}###reset {name}")
-        imgui.pop_style_color(2)
-        self.note(f"reset {name}")
-        self.tooltip(f"back to {default}")
-        return pressed
+    # Values -------------------------------------------------------------------------------------
 
     def value(self, name: str, setting: Setting, value: Any) -> Edit | None:
         """The widget of a value by its kind, of the next item's width."""
@@ -203,7 +170,6 @@ class Widgets(Words):
         self,
         name: str,
         value: Sequence[float],
-        unit: str = "",
         lo: float | None = None,
         hi: float | None = None,
     ) -> Edit | None:
@@ -211,9 +177,8 @@ class Widgets(Words):
         speed = max(*(abs(part) for part in value), 1.0) * DRAG_SPEED
         low, high = -FARTHEST if lo is None else lo, FARTHEST if hi is None else hi
         clamp = imgui.SliderFlags_.always_clamp.value
-        shown = f"%.4g {unit}".rstrip()
         drag = imgui.drag_float3 if len(value) == 3 else imgui.drag_float2
-        changed, dragged = drag(f"##{name}", list(value), speed, low, high, shown, clamp)
+        changed, dragged = drag(f"##{name}", list(value), speed, low, high, "%.4g", clamp)
         self.note(name)
         return (
             Edit(tuple(_short(part, "float", low, high) for part in dragged), imgui.get_item_id())
@@ -287,11 +252,6 @@ class Widgets(Words):
         else:
             self._typed.pop(key, None)
         return None
-
-    def reset_width(self) -> float:
-        """Room at a row's right end, px."""
-        style = imgui.get_style()
-        return imgui.get_font_size() + 2.0 * style.frame_padding.x + style.item_inner_spacing.x
 
 
 def _unit(setting: Setting) -> str:

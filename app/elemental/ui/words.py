@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from imgui_bundle import imgui
@@ -12,6 +12,21 @@ from elemental.ui.theme import Fonts, Rgb
 
 Rect = tuple[float, float, float, float]
 """(left, top, right, bottom) in pixels."""
+
+FACT_GAP_EM = 1.2
+"""Between facts on one line, in heights of the text."""
+
+
+def shortened(text: str, width: float) -> str:
+    """As much of the text as fits into ``width`` px, and dots."""
+    low, high = 0, len(text)
+    while low < high:
+        middle = (low + high + 1) // 2
+        if imgui.calc_text_size(f"{text[:middle]}…").x <= width:
+            low = middle
+        else:
+            high = middle - 1
+    return f"{text[:low].rstrip()}…"
 
 
 class Words:
@@ -71,6 +86,41 @@ class Words:
             yield
         finally:
             imgui.pop_font()
+
+    def facts(self, name: str, facts: Sequence[tuple[str, str] | tuple[str, str, Rgb]]) -> None:
+        """Words and figures side by side, on as many lines as they need; recorded as ``name``."""
+        style, em = imgui.get_style(), imgui.get_font_size()
+        imgui.begin_group()
+        right = imgui.get_cursor_screen_pos().x + imgui.get_content_region_avail().x
+        for number, (word, figure, *rgb) in enumerate(facts):
+            with self.figures():
+                width = imgui.calc_text_size(figure).x
+            width += imgui.calc_text_size(word).x + style.item_inner_spacing.x
+            if number and imgui.get_item_rect_max().x + FACT_GAP_EM * em + width <= right:
+                imgui.same_line(0.0, FACT_GAP_EM * em)
+            imgui.begin_group()
+            self.text(word, rgb[0] if rgb else theme.MUTED)
+            imgui.same_line(0.0, style.item_inner_spacing.x)
+            with self.figures():
+                self.text(figure)
+            imgui.end_group()
+        imgui.end_group()
+        self.note(name)
+
+    def cut(self, text: str, width: float, rgb: Rgb | None = None) -> None:
+        """A line of at most ``width`` px; what is too long ends in dots, and a tooltip has it."""
+        if imgui.calc_text_size(text).x <= width:
+            self.text(text, rgb)
+            return
+        self.text(shortened(text, width), rgb)
+        self.tooltip(text)
+
+    def tell_if_cut(self, text: str) -> None:
+        """A tooltip with the last item's text where the page is too narrow for it."""
+        if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip.value):
+            room = imgui.get_content_region_avail().x - 2.0 * imgui.get_font_size()
+            if imgui.calc_text_size(text).x > room:
+                imgui.set_tooltip(text)
 
     def flow(self, width: float) -> None:
         """Stay on the line if ``width`` more pixels fit, else go on on the next."""

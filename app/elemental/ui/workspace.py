@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 from imgui_bundle import imgui
 
+from elemental.ui.docking import MARK, Docking, Place, Room
 from elemental.ui.widgets import Widgets
 from elemental.ui.words import Rect
 
-DOCK = "workspace"
-LEFT_SHARE, RIGHT_SHARE, BOTTOM_SHARE = 0.17, 0.32, 0.34
-"""Of what is left of the window's width and height, in this order."""
 SETTLING_FRAMES = 3
 """Until docked windows have taken their places."""
 
@@ -23,7 +20,7 @@ class Page:
     """A dockable window; ``draw`` makes its widgets."""
 
     name: str
-    place: Literal["left", "right", "bottom"]
+    place: Place
     draw: Callable[[Widgets], None]
 
 
@@ -36,14 +33,20 @@ class Workspace:
         self.hidden: set[str] = set()
         self._front: list[str] = []
         """Pages to bring to the front, one a frame; several times each: docks settle slowly."""
+        self._shown: dict[str, bool] = {}
+        """Pages that are drawn, and whether they are in front at their place."""
+        self._docking: Docking | None = None
         self._wants_layout = True
         if layout:
             imgui.load_ini_settings_from_memory(layout)
-            self._wants_layout = DOCK not in layout
+            head, _, told = layout.partition("\n")[0].partition(f"; {MARK}")
+            self._wants_layout = bool(head) or f"; {MARK}" not in layout
+            self._docking = Docking.read(told, [page.name for page in pages])
 
     def layout(self) -> str:
         """The places of everything, as ``Workspace`` takes it again."""
-        return f"; {DOCK}\n{imgui.save_ini_settings_to_memory()}"
+        told = self._docking.text() if self._docking is not None else ""
+        return f"; {MARK} {told}\n{imgui.save_ini_settings_to_memory()}"
 
     def reset_layout(self) -> None:
         """Put every page back where it was at first."""
@@ -68,10 +71,8 @@ class Workspace:
         if imgui.begin_main_menu_bar():
             menu(w)
             imgui.end_main_menu_bar()
-        dock = imgui.get_id(DOCK)
-        if self._wants_layout:
-            self._wants_layout = False
-            self._build(dock)
+        dock = imgui.get_id(MARK)
+        self._lay_out(dock)
         flags = imgui.DockNodeFlags_.passthru_central_node.value
         flags |= imgui.DockNodeFlags_.no_docking_over_central_node.value
         imgui.dock_space_over_viewport(dock, imgui.get_main_viewport(), flags)
@@ -87,28 +88,28 @@ class Workspace:
         if to_front:
             imgui.set_next_window_focus()
         self.widgets.page = page.name
-        if imgui.begin(page.name)[0]:
+        shows = bool(imgui.begin(page.name)[0])
+        self._shown[page.name] = shows
+        if shows:
             page.draw(self.widgets)
         imgui.end()
 
-    def _build(self, dock: int) -> None:
-        build = imgui.internal
-        viewport = imgui.get_main_viewport()
-        build.dock_builder_remove_node(dock)
-        build.dock_builder_add_node(dock, imgui.internal.DockNodeFlagsPrivate_.dock_space.value)
-        build.dock_builder_set_node_size(dock, viewport.work_size)
-        rest, places = dock, {}
-        for place, way, share in (
-            ("left", imgui.Dir.left, LEFT_SHARE),
-            ("right", imgui.Dir.right, RIGHT_SHARE),
-            ("bottom", imgui.Dir.down, BOTTOM_SHARE),
-        ):
-            _, at_way, rest = build.dock_builder_split_node_py(rest, way, share)
-            places[place] = at_way
-        for page in self.pages:
-            build.dock_builder_dock_window(page.name, places[page.place])
-        build.dock_builder_finish(dock)
-        first = {page.place: page.name for page in reversed(self.pages)}
-        self._front = [
-            name for name in first.values() for _ in range(SETTLING_FRAMES)
-        ] + self._front
+    def _lay_out(self, dock: int) -> None:
+        """Dock the pages at first, and wherever another size asks for another layout."""
+        size = imgui.get_main_viewport().work_size
+        room = Room(max(size.x, 1.0), max(size.y, 1.0), imgui.get_font_size())
+        docking = self._docking
+        keeps_front = False
+        if docking is not None and not self._wants_layout and docking.room != room:
+            self._wants_layout = keeps_front = docking.fit(room)
+        if not self._wants_layout:
+            return
+        self._wants_layout = False
+        places = {page.name: page.place for page in self.pages}
+        shown = [name for name, shows in self._shown.items() if shows and keeps_front]
+        in_front = sorted(shown, key=lambda name: places[name] == "right")
+        self._docking = made = Docking.build(dock, room, places)
+        first = {made.pages[page.name]: page.name for page in reversed(self.pages)}
+        first |= {made.pages[name]: name for name in in_front}
+        fronts = [name for name in first.values() if name not in self.hidden]
+        self._front = [name for name in fronts for _ in range(SETTLING_FRAMES)] + self._front

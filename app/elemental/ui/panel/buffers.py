@@ -20,8 +20,13 @@ from elemental.ui.widgets import Widgets
 
 LIST_SHARE = 0.26
 """Of the page's width, for the list of targets."""
+LEAST_LIST_EM = 8.0
+"""Where that is less, in heights of the text, they drop down."""
 FIRST_TARGET = "scene_color"
 """Looked at until another is chosen."""
+LINES_BELOW, WIDE_LINE_EM = 3, 32.0
+"""Lines of values below the picture, where it is narrower than so many heights of the text."""
+LEAST_PICTURE_EM = 5.0
 ZOOM_PER_NOTCH = 1.25
 LARGEST_TEXEL_PX = 64.0
 KIB = 1024
@@ -51,10 +56,14 @@ def buffers_page(
 ) -> None:
     """Draw the page: the targets at the left, the chosen one at the right."""
     width = imgui.get_content_region_avail().x
-    if imgui.begin_child("targets", imgui.ImVec2(LIST_SHARE * width, 0.0)):
-        _list(w, view, report)
-    imgui.end_child()
-    imgui.same_line()
+    _follow(view, report)
+    if LIST_SHARE * width >= LEAST_LIST_EM * imgui.get_font_size():
+        if imgui.begin_child("targets", imgui.ImVec2(LIST_SHARE * width, 0.0)):
+            _list(w, view, report)
+        imgui.end_child()
+        imgui.same_line()
+    else:
+        _drop_down(w, view, report)
     if imgui.begin_child("look"):
         if view.look is None:
             w.hint("Choose a target of the frame.")
@@ -87,25 +96,42 @@ def targets_of(report: GraphReport) -> list[tuple[Target, GraphResource]]:
     return found
 
 
+def title_of(target: Target) -> str:
+    """A target's name, numbered where the frame has several of that name."""
+    return f"{target.name} #{target.occurrence + 1}" if target.occurrence else target.name
+
+
+def _follow(view: BufferView, report: GraphReport | None) -> None:
+    """Take over which targets there are; look at the first one at first."""
+    if report is None:
+        return
+    for target, resource in targets_of(report):
+        slices = resource.size[2] if len(resource.size) == 3 else resource.layers
+        view.counts[target] = (resource.mips, slices)
+        if view.look is None and target.name == FIRST_TARGET:
+            choose(view, target)
+
+
+def _drop_down(w: Widgets, view: BufferView, report: GraphReport | None) -> None:
+    """The targets where there is no room for a list."""
+    targets = {title_of(target): target for target, _ in targets_of(report)} if report else {}
+    shown = title_of(view.look.target) if view.look is not None else ""
+    chosen = w.choose("target", shown, list(targets), imgui.get_content_region_avail().x)
+    if chosen != shown:
+        choose(view, targets[chosen])
+
+
 def _list(w: Widgets, view: BufferView, report: GraphReport | None) -> None:
     view.searched = w.search("search", view.searched)
     if report is None:
         return
-    if view.look is None:
-        first = (t for t, _ in targets_of(report) if t.name == FIRST_TARGET)
-        target = next(first, None)
-        if target is not None:
-            choose(view, target)
     if imgui.begin_child("names"):
         ages = {held.memory: held for held in report.pool.held}
         for target, resource in targets_of(report):
-            slices = resource.size[2] if len(resource.size) == 3 else resource.layers
-            view.counts[target] = (resource.mips, slices)
             if view.searched.lower() not in target.name.lower():
                 continue
-            number = f" #{target.occurrence + 1}" if target.occurrence else ""
             chosen = view.look is not None and view.look.target == target
-            label = f"{target.name}{number}###{target.name}{target.size}{target.occurrence}"
+            label = f"{title_of(target)}###{target.name}{target.size}{target.occurrence}"
             if imgui.selectable(label, chosen)[0]:
                 choose(view, target)
             w.note(target.name)
@@ -194,8 +220,10 @@ def _picture(w: Widgets, view: BufferView, inspector: Inspector) -> None:
     look = view.look
     assert look is not None
     room = imgui.get_content_region_avail()
-    line = imgui.get_text_line_height_with_spacing() + imgui.get_style().item_spacing.y
-    size = (max(int(room.x), 1), max(int(room.y - line), 1))
+    lines = LINES_BELOW if room.x < WIDE_LINE_EM * imgui.get_font_size() else 1
+    line = lines * imgui.get_text_line_height_with_spacing() + imgui.get_style().item_spacing.y
+    least = LEAST_PICTURE_EM * imgui.get_font_size()
+    size = (max(int(room.x), 1), max(int(room.y - line), int(least)))
     width, height = (max(extent >> look.level, 1) for extent in look.target.size[:2])
     if view.step <= 0.0:
         view.center = (width / 2, height / 2)
@@ -245,12 +273,11 @@ def _values(w: Widgets, look: Look, inspector: Inspector, size: tuple[int, int])
         w.text("this frame has no such target", theme.ACCENT)
         return
     probed = inspector.probed
-    with w.figures():
-        text = shape
-        if probed is not None:
-            x, y = probed.texel
-            numbers = probed.words if probed.words is not None else probed.values
-            digits = "  ".join(f"{n:,}" if isinstance(n, int) else f"{n:.6g}" for n in numbers)
-            text = f"{shape}   ({x}, {size[1] - 1 - y})   {digits}"
-        w.text(text, theme.MUTED)
-    w.note("values")
+    facts = [("", shape)]
+    if probed is not None:
+        x, y = probed.texel
+        facts.append(("texel", f"{x}, {size[1] - 1 - y}"))
+        numbers = probed.words if probed.words is not None else probed.values
+        digits = [f"{n:,}" if isinstance(n, int) else f"{n:.6g}" for n in numbers]
+        facts += [(name, digit) for name, digit in zip("RGBA", digits, strict=False)]
+    w.facts("values", facts)

@@ -19,7 +19,7 @@ from elemental.ui.widgets import Widgets
 
 LEAST_HEIGHT_PX = 60.0
 TICK_EV = 2
-"""Stops between two numbers of the axis."""
+"""Stops between two numbers of the axis, or a multiple where there is little room."""
 
 
 def exposure_page(w: Widgets, eye: EyeReading | None, settings: Mapping[str, Any]) -> None:
@@ -28,12 +28,18 @@ def exposure_page(w: Widgets, eye: EyeReading | None, settings: Mapping[str, Any
         w.hint("No histogram yet.")
         return
     low, high = settings["eye_adaptation.min_brightness"], settings["eye_adaptation.max_brightness"]
-    with w.figures():
-        w.text(
-            f"measured {eye.measured:8.4f}   adapted to {eye.brightness:8.4f}   "
-            f"{math.log2(max(eye.brightness, 1e-9)):+6.2f} EV   bounds {low:g} to {high:g}"
-        )
-    w.note("figures")
+    w.facts(
+        "figures",
+        [
+            ("measured", f"{eye.measured:.4f} nit", theme.BLUE),
+            ("adapted to", f"{eye.brightness:.4f} nit", theme.ACCENT),
+            ("that is", f"{math.log2(max(eye.brightness, 1e-9)):+.2f} EV"),
+            ("bounds", f"{low:g} to {high:g} nit"),
+            ("bias", f"{settings['exposure']:+.2f} EV"),
+        ],
+    )
+    if not eye.histogram.any():
+        w.hint("Adaptation is off: the least and the greatest brightness are equal.")
     room = imgui.get_content_region_avail()
     axis = imgui.get_text_line_height()
     size = imgui.ImVec2(max(room.x, 1.0), max(room.y - axis - 4.0, LEAST_HEIGHT_PX))
@@ -51,9 +57,7 @@ def exposure_page(w: Widgets, eye: EyeReading | None, settings: Mapping[str, Any
         share = (math.log2(max(brightness, 1e-9)) - log_min) / span
         _line(corner, size, share, rgb, name)
     _axis(corner, size, log_min, span)
-    if not eye.histogram.any():
-        imgui.set_cursor_screen_pos(imgui.ImVec2(corner.x + 8.0, corner.y + 6.0))
-        w.text("adaptation is off: min and max brightness are equal", theme.MUTED)
+    imgui.dummy(imgui.ImVec2(1.0, axis))
 
 
 def _bars(
@@ -113,7 +117,10 @@ def _line(corner: imgui.ImVec2, size: imgui.ImVec2, share: float, rgb: Rgb, name
         2.0 if bright else 1.0,
     )
     row = ("adapted", "measured", "min", "max").index(name)
-    place = imgui.ImVec2(x + 4.0, corner.y + 3.0 + row * imgui.get_text_line_height())
+    line = imgui.get_text_line_height()
+    if (row + 1) * line + 3.0 > size.y:
+        return
+    place = imgui.ImVec2(x + 4.0, corner.y + 3.0 + row * line)
     if x + imgui.calc_text_size(name).x + 6.0 > corner.x + size.x:
         place.x = x - imgui.calc_text_size(name).x - 4.0
     canvas.add_text(place, theme.packed(rgb), name)
@@ -121,7 +128,9 @@ def _line(corner: imgui.ImVec2, size: imgui.ImVec2, share: float, rgb: Rgb, name
 
 def _axis(corner: imgui.ImVec2, size: imgui.ImVec2, log_min: float, span: float) -> None:
     canvas = imgui.get_window_draw_list()
-    for ev in range(math.ceil(log_min / TICK_EV) * TICK_EV, int(log_min + span) + 1, TICK_EV):
+    widest = imgui.calc_text_size("+16 EV").x
+    step = TICK_EV * max(math.ceil(widest / max(size.x * TICK_EV / span, 1.0)), 1)
+    for ev in range(math.ceil(log_min / step) * step, int(log_min + span) + 1, step):
         x = corner.x + size.x * (ev - log_min) / span
         text = f"{ev:+d}" if ev else "0 EV"
         half = imgui.calc_text_size(text).x / 2

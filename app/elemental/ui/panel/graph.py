@@ -22,6 +22,8 @@ GAP = (3.0, 0.7)
 """Between boxes."""
 DETAIL_SHARE = 0.28
 """Of the page's width, for what is told of the chosen pass."""
+LEAST_DETAIL_EM = 12.0
+"""Width at least, in heights of the text; where this is over half, it stands below the graph."""
 
 
 @dataclass
@@ -57,22 +59,33 @@ def graph_page(w: Widgets, view: GraphView, report: GraphReport | None) -> str |
         w.hint("The graph shows with the next frame.")
         return None
     pool = report.pool
-    w.text(
-        f"{len(report.passes)} passes, {len(report.edges)} edges    "
-        f"targets {report.transient_bytes / KIB**2:.1f} MiB in "
-        f"{report.shared_bytes / KIB**2:.1f}    pool {pool.bytes / KIB**2:.1f} MiB, "
-        f"at most {pool.high_water / KIB**2:.1f}; {pool.allocations} allocations, "
-        f"{pool.reuses} reuses",
-        theme.MUTED,
+    w.facts(
+        "pool",
+        [
+            ("passes", f"{len(report.passes)}"),
+            ("edges", f"{len(report.edges)}"),
+            ("targets", f"{report.transient_bytes / KIB**2:.1f} MiB"),
+            ("in", f"{report.shared_bytes / KIB**2:.1f} MiB"),
+            ("pool", f"{pool.bytes / KIB**2:.1f} MiB"),
+            ("at most", f"{pool.high_water / KIB**2:.1f} MiB"),
+            ("allocations", f"{pool.allocations:,}"),
+            ("reuses", f"{pool.reuses:,}"),
+        ],
     )
-    w.note("pool")
-    width = imgui.get_content_region_avail().x
+    room, em = imgui.get_content_region_avail(), imgui.get_font_size()
     flags = imgui.WindowFlags_.no_scrollbar.value | imgui.WindowFlags_.no_scroll_with_mouse.value
-    size = imgui.ImVec2((1.0 - DETAIL_SHARE) * width, 0.0)
+    detail = max(DETAIL_SHARE * room.x, LEAST_DETAIL_EM * em)
+    beside = detail <= 0.5 * room.x
+    size = (
+        imgui.ImVec2(room.x - detail, 0.0)
+        if beside
+        else imgui.ImVec2(0.0, max(0.6 * room.y, 4.0 * em))
+    )
     if imgui.begin_child("graph", size, 0, flags):
         _canvas(w, view, report)
     imgui.end_child()
-    imgui.same_line()
+    if beside:
+        imgui.same_line()
     asked = None
     if imgui.begin_child("detail"):
         asked = _detail(w, view, report)
@@ -182,7 +195,14 @@ def _detail(w: Widgets, view: GraphView, report: GraphReport) -> str | None:
         return None
     w.text(item.name, theme.ACCENT)
     extent = "x".join(map(str, item.extent))
-    w.text(f"{item.kind}  {extent}  {item.gpu_ms:.3f} ms GPU  {item.cpu_ms:.3f} ms CPU")
+    w.facts(
+        "times",
+        [
+            (item.kind, extent),
+            ("GPU", f"{item.gpu_ms:.3f} ms"),
+            ("CPU", f"{item.cpu_ms:.3f} ms"),
+        ],
+    )
     asked = None
     for title, numbers in (("reads", item.reads), ("writes", item.writes)):
         if numbers:
@@ -193,6 +213,5 @@ def _detail(w: Widgets, view: GraphView, report: GraphReport) -> str | None:
                 asked = resource.name if resource.kind == "texture" else None
             w.note(f"{title} {resource.name}")
             w.tooltip("a click shows it in Buffers" if resource.kind == "texture" else "")
-            imgui.same_line()
-            w.text(describe(resource), theme.MUTED)
+            w.hint(describe(resource))
     return asked

@@ -14,7 +14,7 @@ from elemental.scene.lights import Light
 from elemental.settings import Setting
 from elemental.ui import icons
 from elemental.ui.document import Document
-from elemental.ui.rows import property_row, vector_row
+from elemental.ui.rows import list_height, property_row, spelled, vector_row
 from elemental.ui.widgets import Widgets
 
 WHITE_K = 6500.0
@@ -22,7 +22,6 @@ WHITE_K = 6500.0
 BRIGHTEST = 1e5
 """End of the slider, lux or candela: the sun at noon."""
 FARTHEST_M = 1000.0
-LIST_ROWS = 6
 
 
 def lights_page(w: Widgets, chosen: int, document: Document) -> int:
@@ -32,13 +31,14 @@ def lights_page(w: Widgets, chosen: int, document: Document) -> int:
         w.hint("The scene has no lights of its own: it is lit by emission or the sky.")
         return 0
     chosen = min(chosen, len(lights) - 1)
-    height = min(LIST_ROWS, len(lights)) * imgui.get_text_line_height_with_spacing() + 4.0
+    height = list_height(len(lights))
     if imgui.begin_child("list", imgui.ImVec2(0.0, height)):
         for number, light in enumerate(lights):
             label = f"{icons.LAMP}  {light.name or 'unnamed'}##{number}"
             if imgui.selectable(label, number == chosen)[0]:
                 chosen = number
             w.note(light.name)
+            w.tell_if_cut(light.name)
     imgui.end_child()
     light = lights[chosen]
     before = document.saved.lights
@@ -102,7 +102,7 @@ def _fields(w: Widgets, light: Light, saved: Light) -> tuple[dict[str, Any], Any
         if edit is not None:
             changed["temperature"], gesture = edit
     for field in fields_of(light):
-        label = field.key.replace("_", " ").capitalize()
+        label = spelled(field.key)
         shown, default = _shown(light, field), _shown(saved, field)
         edit = property_row(w, field.key, label, field, shown, default)
         if edit is not None:

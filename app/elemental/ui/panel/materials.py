@@ -17,11 +17,10 @@ from elemental.settings.setting import Kind
 from elemental.ui import icons
 from elemental.ui.document import Document
 from elemental.ui.panel.textures import Images, texture_row
-from elemental.ui.rows import property_row, vector_row
+from elemental.ui.rows import list_height, property_row, spelled, vector_row
 from elemental.ui.widgets import Widgets
 
 KINDS: dict[str, Kind] = {"float": "float", "int": "int", "bool": "bool", "color": "color"}
-LIST_ROWS = 6
 DRAW_STATES = (
     Setting("alpha_mode", "choice", "opaque", "what opacity means: nothing, cut-outs, or glass",
             choices=("opaque", "mask", "blend")),
@@ -49,13 +48,14 @@ def materials_page(w: Widgets, chosen: int, document: Document, images: Images) 
     """Draw the page. Returns what is chosen."""
     materials = document.state.materials
     chosen = min(chosen, len(materials) - 1)
-    height = LIST_ROWS * imgui.get_text_line_height_with_spacing()
+    height = list_height(len(materials))
     if imgui.begin_child("list", imgui.ImVec2(0.0, height), imgui.ChildFlags_.resize_y.value):
         for number, material in enumerate(materials):
             label = f"{icons.MATERIAL}  {material.name or 'unnamed'}##{number}"
             if imgui.selectable(label, number == chosen)[0]:
                 chosen = number
             w.note(material.name)
+            w.tell_if_cut(material.name)
     imgui.end_child()
     if chosen < 0:
         return 0
@@ -87,8 +87,7 @@ def _draw_states(
     """How its surfaces are drawn, whatever its shader."""
     for state in DRAW_STATES:
         value, before = getattr(material, state.key), getattr(saved, state.key)
-        label = state.key.replace("_", " ").capitalize()
-        edit = property_row(w, state.key, label, state, value, before)
+        edit = property_row(w, state.key, spelled(state.key), state, value, before)
         if edit is not None:
             document.set_material(index, replace(material, **{state.key: edit.value}))
 
@@ -116,7 +115,7 @@ def _row(
     saved: Material,
     parameter: Parameter,
 ) -> None:
-    name, label = parameter.name, parameter.name.replace("_", " ").capitalize()
+    name, label = parameter.name, spelled(parameter.name)
     value = material.value(name)
     default: Any = parameter.default
     if material.definition == saved.definition:

@@ -10,7 +10,7 @@ import numpy as np
 from imgui_bundle import imgui
 
 from elemental.scene.model import FloatArray, Scene
-from elemental.ui import icons, theme
+from elemental.ui import icons
 from elemental.ui.document import State
 from elemental.ui.widgets import Widgets
 
@@ -50,7 +50,7 @@ def scene_page(
     """Draw the page; ``choose`` is called with what was clicked. Returns what is searched for."""
     searched = w.search("search", searched)
     size = " x ".join(f"{side:.3g}" for side in extent.high - extent.low)
-    w.text(f"{extent.triangles:,} triangles, {size} m", theme.MUTED)
+    w.hint(f"{extent.triangles:,} triangles, {size} m")
     branches: tuple[tuple[str, Kind, str, Sequence[str]], ...] = (
         ("Volumes", "volume", icons.VOLUME, [volume.name for volume in state.volumes]),
         ("Lights", "light", icons.LAMP, [light.name for light in state.lights]),
@@ -71,5 +71,6 @@ def scene_page(
                 if imgui.selectable(label, selection == (kind, k))[0]:
                     choose((kind, k))
                 w.note(f"{kind} {name}")
+                w.tell_if_cut(name)
         clipper.end()
     return searched

@@ -15,6 +15,8 @@ from elemental.ui.sequence_job import SequenceJob, SequenceWords
 from elemental.ui.widgets import Widgets
 
 DEFAULT = SequenceWords(Path("frames"))
+START_EM = 11.0
+"""Width of the button that starts, in heights of the text."""
 FRAME = Setting("frame", "int", 0, "number of a frame; frame n is at n / fps seconds", lo=0)
 FPS = Setting("fps", "float", 30.0, "frames a second of scene time", lo=1.0, hi=120.0)
 SIDE = Setting("side", "int", 1280, "of the pictures", unit="px", lo=1, hi=16384)
@@ -40,7 +42,7 @@ def sequence_page(
 def _buttons(w: Widgets, job: SequenceJob | None, act: Callable[[str], None]) -> None:
     if w.button(f"{icons.SHOT}  Screenshot", "screenshot", help="the picture, without the panel"):
         act("screenshot")
-    imgui.same_line()
+    w.flow(START_EM * imgui.get_font_size())
     if job is not None and not job.is_over:
         if w.button(f"{icons.STOP}  Stop", "stop", help="what is there is kept"):
             act("sequence.stop")
@@ -72,7 +74,7 @@ def _words(w: Widgets, words: SequenceWords) -> SequenceWords:
         if edit is not None:
             size = (edit.value, height) if label == "width" else (width, edit.value)
             words = replace(words, size=size)
-    w.row("Overwrite", "begin anew where frames of something else are")
+    w.row("Overwrite", "begin anew where frames of something else are", small=True)
     words = replace(words, overwrite=w.tick("", words.overwrite, "overwrite"))
     w.text(f"{(last - first + 1) / words.fps:.2f} s", theme.MUTED)
     return words

@@ -8,7 +8,7 @@ from functools import partial
 
 from elemental.settings import SETTINGS, Setting
 from elemental.ui.document import Document
-from elemental.ui.rows import property_row
+from elemental.ui.rows import property_row, spelled
 from elemental.ui.widgets import Widgets
 
 TITLES = {
@@ -63,11 +63,10 @@ def label_of(setting: Setting) -> str:
     """A setting's name within its group, or with it where it is alone there; the unit stands
     behind its value."""
     group, dot, name = setting.key.rpartition(".")
-    words = re.sub(r"(?<=[a-z])(?=\d)", " ", name.removesuffix("_mb").replace("_", " "))
-    words = re.sub(r"\blut\b", "LUT", words)
+    words = spelled(re.sub(r"(?<=[a-z])(?=\d)", "_", name.removesuffix("_mb")))
     if dot and len(GROUPS.get(group, ())) == 1 and title_of(group):
-        return f"{title_of(group)} {words}"
-    return words[0].upper() + words[1:]
+        return f"{title_of(group)} {words[0].lower()}{words[1:]}"
+    return words
 
 
 def matches(setting: Setting, words: list[str]) -> bool:

@@ -15,7 +15,7 @@ from elemental.scene.save_names import relative
 from elemental.settings import Setting
 from elemental.ui import theme
 from elemental.ui.images import Place
-from elemental.ui.rows import is_out_of_sight
+from elemental.ui.rows import spelled
 from elemental.ui.widgets import Widgets
 
 PREVIEW_EM = 14.0
@@ -50,7 +50,8 @@ def texture_row(
     parameter: Parameter,
 ) -> None:
     """Draw the row of one of the textures of a scene's material ``index``."""
-    if is_out_of_sight():
+    label = label_of(parameter)
+    if w.is_out_of_sight(label):
         return
     name, place = parameter.name, (index, parameter.name)
     slot, before = material.texture(name), saved.texture(name)
@@ -58,7 +59,7 @@ def texture_row(
     saved_number = -1 if before is None else before.texture
     changed = number != saved_number
     imgui.push_id(name)
-    w.row(label_of(parameter), f"{parameter.help}\n{_file_help(images.folder)}".strip(), changed)
+    w.row(label, f"{parameter.help}\n{_file_help(images.folder)}".strip(), changed)
     texture = images.textures[number] if slot is not None else None
     _swatch(w, images, name, number, texture)
     plain = material.values.get(name, parameter.default)
@@ -78,8 +79,7 @@ def texture_row(
 
 def label_of(parameter: Parameter) -> str:
     """``Base colour map``: shorter than the parameter's name, and as artists say it."""
-    words = parameter.name.removesuffix("_texture").replace("_", " ").replace("color", "colour")
-    return f"{words[0].upper()}{words[1:]} map"
+    return f"{spelled(parameter.name.removesuffix('_texture'))} map"
 
 
 def shown_name(texture: Texture | None, folder: Path) -> str:

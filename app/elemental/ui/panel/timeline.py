@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -18,10 +19,20 @@ HUES: tuple[Rgb, ...] = (
     (0.72, 0.68, 0.40), (0.40, 0.66, 0.66), (0.60, 0.52, 0.74), (0.74, 0.44, 0.38),
 )  # fmt: skip
 """Of systems, in the order in which they come up."""
-STRIP_PX = 26.0
-HISTORY_PX = 44.0
+STRIP_EM = 1.6
+HISTORY_EM = 2.8
+"""Heights, in those of the text."""
+LEAST_ROWS = 6
 BAR_SHARE = 0.42
 """Of a row's width, for its bar."""
+NAME_EM = 12.0
+"""Least room for a pass's name, in heights of the text: where bars leave less, they go."""
+UNKNOWN = "–"
+
+
+def ms_text(ms: float | None) -> str:
+    """A time, or a dash where there is none yet."""
+    return UNKNOWN if ms is None else f"{ms:.2f} ms"
 
 
 def system_of(name: str) -> str:
@@ -35,38 +46,61 @@ def hues_of(names: Sequence[str]) -> dict[str, Rgb]:
     return {system: HUES[k % len(HUES)] for k, system in enumerate(systems)}
 
 
-def timeline_page(
-    w: Widgets,
-    gpu_ms: Mapping[str, float],
-    cpu_ms: Mapping[str, float],
-    frame_ms: float,
-    panel_ms: float,
-    history: npt.NDArray[np.float32],
-) -> None:
-    """Averaged times by pass in the order of the frame; ``history``: frame times, oldest first."""
+@dataclass(frozen=True)
+class Times:
+    """Averaged times, ms; ``frame`` and ``panel`` are None until one is known."""
+
+    gpu: Mapping[str, float]
+    """By pass, in the order of the frame."""
+    cpu: Mapping[str, float]
+    frame: float | None
+    panel: float | None
+    history: npt.NDArray[np.float32]
+    """Of the last frames, oldest first."""
+
+
+def timeline_page(w: Widgets, times: Times) -> None:
+    """Draw the page."""
+    gpu_ms, cpu_ms, history = times.gpu, times.cpu, times.history
     total = sum(gpu_ms.values())
-    with w.figures():
-        rate = 1e3 / frame_ms if frame_ms > 0 else 0.0
-        w.text(
-            f"frame {frame_ms:7.2f} ms  {rate:5.1f}/s    GPU {total:7.2f} ms    "
-            f"CPU {sum(cpu_ms.values()):6.2f} ms    panel {panel_ms:5.2f} ms"
-        )
-    w.note("figures")
+    w.facts(
+        "figures",
+        [
+            ("frame", ms_text(times.frame)),
+            ("frames/s", f"{1e3 / times.frame:.1f}" if times.frame else UNKNOWN),
+            ("GPU", ms_text(total if gpu_ms else None)),
+            ("CPU", ms_text(sum(cpu_ms.values()) if cpu_ms else None)),
+            ("panel", ms_text(times.panel)),
+        ],
+    )
+    if not gpu_ms:
+        w.hint("Times are known once a frame is done.")
+        return
     if len(history) > 1:
-        size = imgui.ImVec2(-1.0, HISTORY_PX)
-        top = max(float(np.percentile(history, 95)) * 1.25, 1.0)
-        imgui.plot_lines("##history", history, 0, f"{top:.0f} ms", 0.0, top, size)
-        w.note("history")
+        _history(w, history)
     hues = hues_of(list(gpu_ms))
     _strip(w, gpu_ms, total, hues)
     _rows(w, gpu_ms, cpu_ms, hues)
+
+
+def _history(w: Widgets, history: npt.NDArray[np.float32]) -> None:
+    """The last frames' times from 0 to the number at the top."""
+    corner, em = imgui.get_cursor_screen_pos(), imgui.get_font_size()
+    top = max(float(np.percentile(history, 95)) * 1.25, 1.0)
+    size = imgui.ImVec2(-1.0, HISTORY_EM * em)
+    imgui.plot_lines("##history", history, 0, "", 0.0, top, size)
+    w.note("history")
+    w.tooltip(f"{len(history)} frames, the newest at the right; 0 to {top:.0f} ms")
+    place = imgui.ImVec2(corner.x + 0.4 * em, corner.y + 0.15 * em)
+    imgui.get_window_draw_list().add_text(place, theme.packed(theme.MUTED), f"{top:.0f} ms")
 
 
 def _strip(w: Widgets, gpu_ms: Mapping[str, float], total: float, hues: Mapping[str, Rgb]) -> None:
     """All passes side by side, to scale; the one under the mouse is named."""
     corner = imgui.get_cursor_screen_pos()
     width = imgui.get_content_region_avail().x
-    imgui.invisible_button("strip", imgui.ImVec2(max(width, 1.0), STRIP_PX))
+    height = STRIP_EM * imgui.get_font_size()
+    imgui.invisible_button("strip", imgui.ImVec2(max(width, 1.0), height))
     w.note("strip")
     mouse = imgui.get_mouse_pos().x if imgui.is_item_hovered() else -1.0
     canvas = imgui.get_window_draw_list()
@@ -77,7 +111,7 @@ def _strip(w: Widgets, gpu_ms: Mapping[str, float], total: float, hues: Mapping[
         hue = theme.packed(hues[system_of(name)], 1.0 if lit else 0.8)
         inner = max(end - 1.0, x + 0.5)
         canvas.add_rect_filled(
-            imgui.ImVec2(x, corner.y), imgui.ImVec2(inner, corner.y + STRIP_PX), hue
+            imgui.ImVec2(x, corner.y), imgui.ImVec2(inner, corner.y + height), hue
         )
         if lit:
             imgui.set_tooltip(f"{name}  {ms:.3f} ms  {100 * ms / total:.1f} %")
@@ -90,7 +124,9 @@ def _rows(
     cpu_ms: Mapping[str, float],
     hues: Mapping[str, Rgb],
 ) -> None:
-    if not imgui.begin_child("passes"):
+    least = LEAST_ROWS * imgui.get_text_line_height_with_spacing()
+    height = max(imgui.get_content_region_avail().y, least)
+    if not imgui.begin_child("passes", imgui.ImVec2(0.0, height)):
         imgui.end_child()
         return
     names = list(gpu_ms)
@@ -98,24 +134,31 @@ def _rows(
     clipper = imgui.ListClipper()
     clipper.begin(len(names))
     canvas = imgui.get_window_draw_list()
+    width, em = imgui.get_content_region_avail().x, imgui.get_font_size()
+    with w.figures():
+        digit = imgui.calc_text_size("0").x
+    has_cpu = NAME_EM * em + 20 * digit <= width
+    digits = (20 if has_cpu else 10) * digit
+    bars = BAR_SHARE * width if (1.0 - BAR_SHARE) * width >= NAME_EM * em + digits else 0.0
+    name_width = width - bars - digits - em
     while clipper.step():
         for name in names[clipper.display_start : clipper.display_end]:
-            width = imgui.get_content_region_avail().x
             corner = imgui.get_cursor_screen_pos()
             height = imgui.get_text_line_height()
-            left = corner.x + (1.0 - BAR_SHARE) * width
-            end = left + max(BAR_SHARE * width * gpu_ms[name] / longest, 1.0)
-            canvas.add_rect_filled(
-                imgui.ImVec2(left, corner.y + 3.0),
-                imgui.ImVec2(end, corner.y + height - 3.0),
-                theme.packed(hues[system_of(name)], 0.85),
-            )
-            w.text(name)
+            left = corner.x + width - bars
+            if bars:
+                end = left + max(bars * gpu_ms[name] / longest, 1.0)
+                canvas.add_rect_filled(
+                    imgui.ImVec2(left, corner.y + 3.0),
+                    imgui.ImVec2(end, corner.y + height - 3.0),
+                    theme.packed(hues[system_of(name)], 0.85),
+                )
+            w.cut(name, name_width)
             w.note(name)
+            imgui.same_line(width - bars - digits - 0.5 * em)
             with w.figures():
-                figures = f"{gpu_ms[name]:8.3f}  {cpu_ms.get(name, 0.0):7.3f}"
-                place = (1.0 - BAR_SHARE) * width - imgui.calc_text_size(figures).x - 8.0
-                imgui.same_line(max(place, 0.0))
-                w.text(figures, theme.MUTED)
+                cpu = f" {cpu_ms.get(name, 0.0):9.3f}" if has_cpu else ""
+                w.text(f"{gpu_ms[name]:9.3f}{cpu}", theme.MUTED)
+            w.tooltip(f"GPU {gpu_ms[name]:.3f} ms, CPU {cpu_ms.get(name, 0.0):.3f} ms")
     clipper.end()
     imgui.end_child()

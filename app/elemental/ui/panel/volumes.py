@@ -15,7 +15,7 @@ from elemental.settings import SETTINGS, Setting, Settings, check_override
 from elemental.ui import icons, theme
 from elemental.ui.document import Document
 from elemental.ui.panel.settings import GROUPS, label_of, matches, title_of
-from elemental.ui.rows import help_text, is_out_of_sight, property_row, vector_row
+from elemental.ui.rows import help_text, property_row, vector_row
 from elemental.ui.widgets import Edit, Widgets
 
 FIELDS = (
@@ -167,7 +167,9 @@ def _override(document: Document, index: int, volume: Volume, overrides: Edit) -
 
 def _override_row(w: Widgets, settings: Settings, volume: Volume, setting: Setting) -> Edit | None:
     """A tick, and the value beside it: the volume's own, or the scene's, which can't be changed."""
-    if is_out_of_sight():
+    small = setting.kind == "bool"
+    label = label_of(setting)
+    if w.is_out_of_sight(label, small):
         return None
     key = setting.key
     on = key in volume.overrides
@@ -176,7 +178,7 @@ def _override_row(w: Widgets, settings: Settings, volume: Volume, setting: Setti
     ticked = w.tick("", on, f"override {key}")
     w.tooltip("override the scene's value in this volume")
     imgui.same_line()
-    w.row(label_of(setting), help_text(setting), on)
+    w.row(label, help_text(setting), on, small)
     imgui.begin_disabled(not on)
     edit = w.value(key, setting, value)
     imgui.end_disabled()
