@@ -204,14 +204,17 @@ def _detail(w: Widgets, view: GraphView, report: GraphReport) -> str | None:
         ],
     )
     asked = None
-    for title, numbers in (("reads", item.reads), ("writes", item.writes)):
+    for title, numbers in (("writes", item.writes), ("reads", item.reads)):
         if numbers:
             w.text(title, theme.MUTED)
         for number in numbers:
             resource = report.resources[number]
-            if imgui.selectable(f"{resource.name}##{title}{number}", False)[0]:
+            size = imgui.calc_text_size(resource.name)
+            if imgui.selectable(f"{resource.name}##{title}{number}", False, 0, size)[0]:
                 asked = resource.name if resource.kind == "texture" else None
             w.note(f"{title} {resource.name}")
             w.tooltip("a click shows it in Buffers" if resource.kind == "texture" else "")
-            w.hint(describe(resource))
+            told = describe(resource)
+            w.flow(imgui.calc_text_size(told).x)
+            w.hint(told)
     return asked
