@@ -16,15 +16,22 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-import mitsuba as mi
 import numpy as np
 
 from elemental.core.errors import InputError
 from elemental.core.images import read_environment
+from elemental.flag_values import Parser, join_vectors, number, size, vector, whole
 from elemental.scene.deform import posed
 from elemental.scene.evaluate import placed_camera
 from elemental.scene.model import FloatArray
-from elemental.session import Stage, Viewpoint, set_stage
+from elemental.session import Stage, Viewpoint, check_output, set_stage
+
+try:
+    import flip_evaluator  # noqa: F401  (what metrics.py measures with)
+    import mitsuba as mi
+except ImportError as missing:
+    print(f"ground_truth: error: needs {missing.name}: pip install .[dev]", file=sys.stderr)
+    sys.exit(2)
 
 mi.set_variant("scalar_rgb")
 
@@ -36,29 +43,27 @@ from reference.sheet import sheet  # noqa: E402
 OUT = Path(__file__).resolve().parent.parent / "out" / "ground_truth"
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="tools/ground_truth", description=__doc__)
+MOST_SAMPLES = 1 << 20
+"""A pixel: hours on any machine, and well inside what mitsuba counts with."""
+
+
+def _parser() -> Parser:
+    parser = Parser(prog="tools/ground_truth", description=__doc__)
     parser.add_argument("scene", metavar="SCENE", help="a file or a scene's name, as for `shot`")
-    parser.add_argument("--size", default="320x180", metavar="WxH", help="pixels (320x180)")
-    parser.add_argument("--camera", metavar="NAME", help="a camera of the scene (its first)")
-    parser.add_argument("--eye", type=_point, metavar="X,Y,Z", help="camera position, metres")
-    parser.add_argument("--target", type=_point, metavar="X,Y,Z", help="point looked at, metres")
-    parser.add_argument("--fov", type=float, metavar="DEG", help="vertical angle, degrees")
+    flag = parser.flag
+    flag("--size", "WxH", size, (320, 180), "pixels (320x180)")
+    flag("--camera", "NAME", str, None, "a camera of the scene (its first)")
+    flag("--eye", "X,Y,Z", vector, None, "camera position, metres")
+    flag("--target", "X,Y,Z", vector, None, "point looked at, metres")
+    flag("--fov", "DEG", number(1, 179), None, "vertical angle, degrees")
     parser.add_argument(
         "--set", action="append", default=[], metavar="KEY=VALUE", help="a setting, repeatable"
     )
-    parser.add_argument("--time", type=float, default=0.0, metavar="S", help="scene time, s (0)")
-    parser.add_argument("--spp", type=int, default=512, help="samples a pixel (512)")
-    parser.add_argument("--ours", type=Path, metavar="FILE.exr", help="compare this picture")
-    parser.add_argument(
-        "--out", type=Path, metavar="STEM", help="STEM.png and STEM.json (out/ground_truth/SCENE)"
-    )
+    flag("--time", "S", number(0, 1e6), 0.0, "scene time, s (0)")
+    flag("--spp", "N", whole(1, MOST_SAMPLES), 512, "samples a pixel (512)")
+    flag("--ours", "FILE.exr", Path, None, "compare this picture")
+    flag("--out", "STEM", Path, None, "STEM.png and STEM.json (out/ground_truth/SCENE)")
     return parser
-
-
-def _point(text: str) -> tuple[float, float, float]:
-    x, y, z = (float(word) for word in text.split(","))
-    return x, y, z
 
 
 def shoot(words: argparse.Namespace, stage: Stage) -> FloatArray:
@@ -66,7 +71,14 @@ def shoot(words: argparse.Namespace, stage: Stage) -> FloatArray:
     with tempfile.TemporaryDirectory() as folder:
         output = Path(folder) / "ours.exr"
         command = [sys.executable, "-m", "elemental", "shot", words.scene, "-o", str(output)]
-        command += ["--view", "scene_color", "--size", words.size, "--time", str(words.time)]
+        command += [
+            "--view",
+            "scene_color",
+            "--size",
+            "{}x{}".format(*words.size),
+            "--time",
+            str(words.time),
+        ]
         if words.eye is not None:
             for flag, point in (("--eye", words.eye), ("--target", words.target)):
                 command += [flag, ",".join(map(str, point))]
@@ -113,7 +125,7 @@ def reference(
 def main() -> int:
     """Run, with one line for input that is wrong."""
     try:
-        return run(_parser().parse_args())
+        return run(_parser().parse_args(join_vectors(sys.argv[1:])))
     except InputError as error:
         print(f"ground_truth: error: {error}", file=sys.stderr)
         return 2
@@ -121,20 +133,28 @@ def main() -> int:
 
 def run(words: argparse.Namespace) -> int:
     """Render, compare, write."""
-    width, height = (int(side) for side in words.size.split("x"))
+    stem = words.out or OUT / Path(words.scene).stem
+    if words.out is None:
+        stem.parent.mkdir(parents=True, exist_ok=True)
+    pictures = [stem.with_suffix(suffix) for suffix in (".png", ".json")]
+    for file in pictures:
+        check_output("--out", file, (file.suffix,))
     viewpoint = Viewpoint(words.camera, words.eye, words.target, words.fov)
-    stage = set_stage(words.scene, words.set, viewpoint, (width, height))
+    stage = set_stage(words.scene, words.set, viewpoint, words.size)
     camera = placed_camera(stage.scene, stage.camera, words.time)
     stage = replace(stage, camera=camera, scene=posed(stage.scene, words.time))
     settings = stage.settings
     bounces = int(settings["gi.bounces"]) if settings["gi.enabled"] else 0
-    job = Job((width, height), words.spp, bounces, float(settings["sky.intensity"]))
+    job = Job(words.size, words.spp, bounces, float(settings["sky.intensity"]))
     ours = shoot(words, stage) if words.ours is None else read_environment(words.ours)
+    if ours.shape[1::-1] != words.size:
+        found = "{}x{}".format(*ours.shape[1::-1])
+        raise InputError(words.ours or "shot", "", f"is {found} pixels, --size says otherwise")
     halves, mask, glass = reference(stage, job)
     picture = (halves[0] + halves[1]) * np.float32(0.5)
     figures = {
         "scene": words.scene,
-        "size": words.size,
+        "size": "{}x{}".format(*words.size),
         "camera": stage.camera.name,
         "time_s": words.time,
         "settings": words.set,
@@ -147,12 +167,10 @@ def run(words: argparse.Namespace) -> int:
         "reference_noise": noise(*halves, mask),
     }
     print(table(figures))
-    stem = words.out or OUT / Path(words.scene).stem
-    stem.parent.mkdir(parents=True, exist_ok=True)
     title = " ".join([Path(words.scene).stem, *words.set])
-    sheet(ours, picture, title).save(stem.with_suffix(".png"))
-    stem.with_suffix(".json").write_text(to_json(figures))
-    print(f"{stem.with_suffix('.png')}\n{stem.with_suffix('.json')}")
+    sheet(ours, picture, title).save(pictures[0])
+    pictures[1].write_text(to_json(figures))
+    print("\n".join(map(str, pictures)))
     return 0
 
 

@@ -12,7 +12,7 @@ import argparse
 import statistics
 import time
 
-from elemental.flags import _size
+from elemental.flag_values import size
 from elemental.session import Viewpoint, headless_device, set_stage
 from elemental.ui.desk import Desk, Words
 from elemental.ui.headless import HeadlessDesk
@@ -49,7 +49,7 @@ def panel_ms(screen: HeadlessDesk, frames: int) -> tuple[float, float]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("scene", nargs="?", default="atrium")
-    parser.add_argument("--size", type=_size, default=(1280, 720), help="of the window, px")
+    parser.add_argument("--size", type=size, default=(1280, 720), help="of the window, px")
     parser.add_argument("--frames", type=int, default=40, help="measured, a page")
     parser.add_argument("--set", dest="words", action="append", default=[])
     words = parser.parse_args()

@@ -36,6 +36,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _refuse("; ".join([first, *(line.removeprefix(f"{error.file}: ") for line in more)]))
     except MemoryError as error:
         return _refuse(f"out of memory: {error}" if str(error) else "out of memory")
+    except ImportError as error:
+        if error.name is None or error.name.partition(".")[0] == __package__:
+            raise
+        return _refuse(f"needs {error.name}: pip install elemental ({error})")
     except BrokenPipeError:
         _drop_output()
     except OSError as error:

@@ -131,7 +131,9 @@ def _make_folder(folder: Path) -> None:
     try:
         folder.mkdir(exist_ok=True)
     except OSError as error:
-        raise InputError("-o", str(folder), f"can't be made ({error.strerror})") from error
+        is_file = isinstance(error, FileExistsError)
+        reason = "is a file, not a folder" if is_file else f"can't be made ({error.strerror})"
+        raise InputError("-o", str(folder), reason) from error
 
 
 def _told(steps: Iterable[Step], count: int) -> Iterator[Step]:

@@ -14,8 +14,15 @@ def elemental(
     *words: object, cwd: Path | None = None, timeout_s: float = 100, **environment: str
 ) -> subprocess.CompletedProcess[str]:
     """Run ``elemental WORDS`` and wait for it; ``environment`` is added to the test's own."""
+    return python("-m", "elemental", *words, cwd=cwd, timeout_s=timeout_s, **environment)
+
+
+def python(
+    *words: object, cwd: Path | None = None, timeout_s: float = 100, **environment: str
+) -> subprocess.CompletedProcess[str]:
+    """The same of ``python WORDS`` with the program on its path."""
     return subprocess.run(
-        [sys.executable, "-m", "elemental", *map(str, words)],
+        [sys.executable, *map(str, words)],
         cwd=cwd,
         env=os.environ | {"PYTHONPATH": str(APP)} | environment,
         capture_output=True,

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from cli.process import assert_refused, elemental
+from cli.process import APP, assert_refused, elemental, python
 from cli.small_scene import BROKEN_FILES, write_corner
 
 BAD_WORDS: list[tuple[list[str], str]] = [
@@ -94,7 +94,7 @@ def test_a_broken_file_is_refused_by_name(tmp_path: Path, name: str) -> None:
 
 
 def test_a_missing_file_and_an_unknown_scene_are_refused(tmp_path: Path) -> None:
-    for name in ("nowhere.gltf", "no_such_scene", "", "."):
+    for name in ("nowhere.gltf", "no_such_scene"):
         assert_refused(elemental("list", "cameras", name, cwd=tmp_path))
 
 
@@ -111,3 +111,26 @@ def test_without_a_display_a_window_is_refused(tmp_path: Path) -> None:
     scene = write_corner(tmp_path)
     result = elemental("run", scene, "--frames", 1, DISPLAY="", WAYLAND_DISPLAY="")
     assert_refused(result, "elemental shot")
+
+
+def test_odd_names_of_scenes_are_refused(tmp_path: Path) -> None:
+    for name, reason in (("a" * 5000, "neither a file nor one"), ("", "neither a file nor one"),
+                         (".", "is a folder")):  # fmt: skip
+        assert_refused(elemental("list", "cameras", name, cwd=tmp_path), reason)
+
+
+def test_a_package_that_is_not_there_is_named(tmp_path: Path) -> None:
+    words = ["shot", str(write_corner(tmp_path)), "-o", str(tmp_path / "out.png")]
+    code = (
+        f"import sys; sys.modules['moderngl'] = None; from elemental.cli import main; main({words})"
+    )
+    result = python("-c", code)
+    assert result.stderr.startswith("elemental: error: needs moderngl: pip install elemental")
+    assert result.stderr.count("\n") == 1
+
+
+def test_the_reference_refuses_bad_words_in_a_line() -> None:
+    pytest.importorskip("mitsuba")
+    result = python(APP.parent / "tools" / "ground_truth.py", "x.glb", "--spp", "0")
+    assert result.returncode == 2
+    assert result.stderr == "ground_truth: error: --spp: '0' is not a whole number, 1 to 1048576\n"

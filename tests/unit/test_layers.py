@@ -17,7 +17,7 @@ LAYERS = (
     {"scene", "gpu"},
     {"passes"},
     {"frame"},
-    {"session", "report", "picture", "remote"},
+    {"session", "report", "picture", "remote", "flag_values"},
     {"sequence"},
     {"ui"},
     {"shot", "bench", "listing", "render", "graph_listing", "flags"},

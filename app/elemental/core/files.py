@@ -51,23 +51,22 @@ def read_text(path: Path) -> str:
 def atomic_file(path: Path) -> Iterator[Path]:
     """A temporary path in `path`'s folder that replaces `path` when the block ends well.
 
-    Raises InputError where the folder is missing or can't be written.
+    Raises InputError where the folder is missing or can't be written, or the disk is full.
     """
+    temporary: Path | None = None
     try:
         handle, name = tempfile.mkstemp(path.suffix, ".elemental-", path.parent)
-    except OSError as error:
-        raise InputError(path, "", f"can't be written ({error.strerror})") from error
-    os.close(handle)
-    temporary = Path(name)
-    try:
+        os.close(handle)
+        temporary = Path(name)
         yield temporary
         temporary.chmod(0o666 & ~_umask())
-        try:
-            os.replace(temporary, path)
-        except OSError as error:
-            raise InputError(path, "", f"can't be written ({error.strerror})") from error
+        os.replace(temporary, path)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise InputError(path, "", f"can't be written ({reason})") from error
     finally:
-        temporary.unlink(missing_ok=True)
+        if temporary is not None:
+            temporary.unlink(missing_ok=True)
 
 
 def _umask() -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import os
 from collections.abc import Iterator
@@ -110,7 +111,11 @@ def write_exr(path: Path, rgb32f: npt.NDArray[np.float32]) -> None:
     pixels = np.ascontiguousarray(rgb32f, dtype=np.float32)
     channels = {"RGBA"[: pixels.shape[2]]: pixels}
     with atomic_file(path) as temporary:
-        OpenEXR.File(header, channels).write(str(temporary))
+        try:
+            with _muted():
+                OpenEXR.File(header, channels).write(str(temporary))
+        except RuntimeError as error:  # a full disk, in OpenEXR's C++
+            raise OSError(errno.EIO, "the disk is full, or failed") from error
 
 
 def resized(pixels: npt.NDArray[np.float32], width: int, height: int) -> npt.NDArray[np.float32]:

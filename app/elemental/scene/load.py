@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import numpy as np
 
 from elemental.core.errors import InputError
+from elemental.core.files import check_file
 from elemental.core.paths import content_root
 from elemental.scene.defaults import add_default_lights, is_unlit
 from elemental.scene.extent import settle
@@ -41,6 +43,7 @@ def load_scene(
 
         scene = load_scene_file(path, animation)
     else:
+        check_file(path)
         raise InputError(path, "", "expected a .gltf, .glb or .toml file")
     _check_animation(scene, animation or str(scene.settings.get("scene.animation", "")))
     settle(scene)
@@ -62,7 +65,8 @@ def _content_scenes() -> Path:
 
 def _find(name_or_path: str | Path) -> Path:
     path = Path(name_or_path)
-    if path.suffix.lower() in (*GLTF_SUFFIXES, SCENE_FILE_SUFFIX) or path.exists():
+    is_there = os.path.exists(name_or_path)  # which takes a name that no file can have for False
+    if path.suffix.lower() in (*GLTF_SUFFIXES, SCENE_FILE_SUFFIX) or is_there:
         return path
     if str(name_or_path) in scene_names():
         return _content_scenes() / f"{name_or_path}{SCENE_FILE_SUFFIX}"

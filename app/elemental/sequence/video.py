@@ -32,10 +32,12 @@ def encode(ffmpeg: str, frames: Path, first: int, count: int, fps: float, video:
 
     Display values go to BT.709 with sRGB's transfer curve, 4:2:0. Raises InputError.
     """
-    with atomic_file(video) as temporary:
+    folder = str(frames.parent.resolve()).replace("%", "%%")  # whole: a colon would be a protocol
+    with atomic_file(video.resolve()) as temporary:
         command = [
             ffmpeg, "-y", "-v", "error", "-nostdin",
-            "-framerate", f"{fps:.6f}", "-start_number", str(first), "-i", str(frames),
+            "-framerate", f"{fps:.6f}", "-start_number", str(first),
+            "-i", f"{folder}/{frames.name}",
             "-frames:v", str(count),
             "-vf", "scale=in_range=full:out_range=tv:out_color_matrix=bt709,format=yuv420p",
             "-c:v", "libx264", "-crf", str(QUALITY_CRF),
@@ -43,7 +45,7 @@ def encode(ffmpeg: str, frames: Path, first: int, count: int, fps: float, video:
             "-fflags", "+bitexact", "-flags:v", "+bitexact", "-movflags", "+faststart",
             str(temporary),
         ]  # fmt: skip
-        ran = subprocess.run(command, capture_output=True, text=True, check=False)
+        ran = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False)
         if ran.returncode != 0:
             last = (ran.stderr.strip() or "no reason given").splitlines()[-1]
             raise InputError("-o", str(video), f"can't be encoded ({last})")

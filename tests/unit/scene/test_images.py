@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import io
+import resource
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import PIL.Image
@@ -206,3 +209,19 @@ def test_cmyk_jpeg() -> None:
     assert red > 230
     assert max(green, blue) < 60
     assert alpha == 255
+
+
+@pytest.mark.parametrize(("name", "write"), [("a.png", write_png), ("a.exr", write_exr)])
+def test_a_full_disk_is_told_and_leaves_the_old_file(
+    name: str, write: Callable[[Path, Any], None], tmp_path: Path
+) -> None:
+    (tmp_path / name).write_bytes(b"old")
+    noise = RNG.integers(0, 255, (64, 64, 3)).astype(np.uint8)
+    kept = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1024, kept[1]))
+    try:
+        with pytest.raises(InputError, match=rf"{name}: can't be written \("):
+            write(tmp_path / name, noise if name == "a.png" else noise.astype(np.float32))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, kept)
+    assert [(path.name, path.read_bytes()) for path in tmp_path.iterdir()] == [(name, b"old")]
