@@ -69,6 +69,17 @@ def test_the_exposure_of_a_bright_sun_is_noted_unless_another_is_asked_for(tmp_p
     assert (settings["exposure"], scene.notes) == (-12.0, [])
 
 
+def test_a_sun_brighter_than_any_exposure_gets_the_darkest(tmp_path: Path) -> None:
+    gltf = corner_gltf()
+    gltf["extensionsUsed"] = ["KHR_lights_punctual"]
+    sun = {"type": "directional", "intensity": 1e38}
+    gltf["extensions"] = {"KHR_lights_punctual": {"lights": [sun]}}
+    gltf["nodes"][3]["extensions"] = {"KHR_lights_punctual": {"light": 0}}
+    path = tmp_path / "sunny.gltf"
+    path.write_text(json.dumps(gltf))
+    assert open_scene(str(path), ())[1]["exposure"] == -16.0
+
+
 def bounds(settings: Settings) -> tuple[float, float]:
     """What the eye adapts between, nit; equal: it does not. # PP-08"""
     low, high = (settings[f"eye_adaptation.{end}_brightness"] for end in ("min", "max"))

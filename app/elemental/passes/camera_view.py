@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from elemental.core import transforms
@@ -20,14 +22,18 @@ def box_corners(low: FloatArray, high: FloatArray) -> FloatArray:
     return np.where(picks, high, low).astype(np.float32)
 
 
-def far_plane(camera: Camera, bounds: tuple[FloatArray, FloatArray]) -> float:
-    """The camera's far plane in m, or one just behind the scene where it has none."""
-    if camera.far is not None:
-        return camera.far
+def clip_range(camera: Camera, bounds: tuple[FloatArray, FloatArray]) -> tuple[float, float]:
+    """(near, far) in m: the camera's planes, the far one just behind the scene where it has none.
+
+    Where they are too far apart to tell depths, they are brought to what holds the scene.
+    """
+    if camera.far is not None and camera.far <= LARGEST_RANGE * camera.near:
+        return camera.near, camera.far
     view_from_world = transforms.inverse(camera.world_from_view)
     corners = transforms.transform_points(view_from_world, box_corners(*bounds))
     farthest = float(-corners[:, 2].min()) * FAR_MARGIN
-    return min(max(farthest, 10.0 * camera.near), LARGEST_RANGE * camera.near)
+    far = min(max(farthest, 10.0 * camera.near), camera.far or math.inf)
+    return max(camera.near, far / LARGEST_RANGE), far
 
 
 def pack_view(
@@ -44,20 +50,19 @@ def pack_view(
     """The block View of glsl/shared/view.glsl. size: (width, height) px; exposure: a factor;
     indirect: factors on the indirect light that surfaces receive; subsurface_reach: m."""
     width, height = size
-    far = far_plane(camera, bounds)
+    near, far = clip_range(camera, bounds)
     view_from_world = transforms.inverse(camera.world_from_view)
-    clip_from_view = transforms.perspective(camera.fov_y, width / height, camera.near, far)
-    clip_from_world = clip_from_view @ view_from_world
+    clip_from_view = transforms.perspective(camera.fov_y, width / height, near, far)
     return pack(
         layouts().block("View"),
-        clip_from_world=clip_from_world,
-        world_from_clip=transforms.inverse(clip_from_world),
+        clip_from_world=clip_from_view @ view_from_world,
+        world_from_clip=camera.world_from_view @ np.linalg.inv(clip_from_view.astype(np.float64)),
         view_from_world=view_from_world,
         world_from_view=camera.world_from_view,
         viewport_px=(width, height, 1.0 / width, 1.0 / height),
         eye_ws=camera.world_from_view[:3, 3],
         exposure=exposure,
-        near=camera.near,
+        near=near,
         far=far,
         time_s=time_s,
         frame=frame,

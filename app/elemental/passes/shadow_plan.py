@@ -10,7 +10,7 @@ import numpy as np
 
 from elemental.core.layout import layouts, pack_array
 from elemental.passes import shadow_fit
-from elemental.passes.camera_view import far_plane
+from elemental.passes.camera_view import clip_range
 from elemental.passes.light_pack import light_bounds, pack_lights, reach
 from elemental.passes.light_profiles import Shape, profiles_of
 from elemental.passes.scene_pack import Array
@@ -257,11 +257,12 @@ def _cascades(
 def _frustum(camera: Camera, size: tuple[int, int], bounds: Bounds) -> ViewFrustum:
     tangent = math.tan(camera.fov_y / 2)
     matrix = camera.world_from_view
+    near, far = clip_range(camera, bounds)
     return ViewFrustum(
         eye=matrix[:3, 3],
         forward=-matrix[:3, 2] / np.linalg.norm(matrix[:3, 2]),
-        near=camera.near,
-        far=far_plane(camera, bounds),
+        near=near,
+        far=far,
         tangent=tangent,
         corner_tangent=math.hypot(tangent, tangent * size[0] / size[1]),
     )

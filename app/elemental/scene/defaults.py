@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from elemental.scene.model import Environment, FloatArray, Light, Scene
+from elemental.settings import SETTINGS
 
 SUN_ILLUMINANCE = 3.0
 """lux: nearly π, so that a white surface facing the sun has a radiance near 1 at exposure 0."""
@@ -85,7 +86,10 @@ def fixed_exposure_ev(scene: Scene) -> float:
     scenes without one stay at 0.
     """
     brightest = _brightest_sun(scene)
-    return 0.0 if brightest <= BRIGHT_SUN else round(-math.log2(brightest / math.pi), 1)
+    if brightest <= BRIGHT_SUN:
+        return 0.0
+    darkest = float(SETTINGS["exposure"].lo or 0.0)
+    return max(round(-math.log2(brightest / math.pi), 1), darkest)
 
 
 def note_exposure(scene: Scene, exposure: float) -> None:

@@ -7,7 +7,6 @@ TOML in the comment that the file begins with; `docs/materials.md` has the forma
 from __future__ import annotations
 
 import difflib
-import tomllib
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -15,6 +14,7 @@ from pathlib import Path
 from elemental.core.errors import InputError, named_by
 from elemental.core.files import read_text
 from elemental.core.paths import content_root
+from elemental.core.toml import parse_toml
 from elemental.scene.parameters import (
     Parameter,
     ParameterKind,
@@ -172,8 +172,8 @@ def read_definition(path: Path) -> MaterialDefinition:
     text = read_text(path)
     heading = _heading(text, path)
     try:
-        table = tomllib.loads(heading)
-    except (ValueError, RecursionError) as error:
+        table = parse_toml(heading)
+    except ValueError as error:
         raise InputError(path, "heading", f"is broken TOML ({error})") from error
     told = {key: table.pop(key, default) for key, default in (
         ("help", ""), ("animated", False), ("displacement_m", 0.0), ("emits", []),

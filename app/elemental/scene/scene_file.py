@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
@@ -14,6 +13,7 @@ from pydantic import Field, ValidationError
 
 from elemental.core.errors import CombinedInputError, InputError
 from elemental.core.files import read_text
+from elemental.core.toml import parse_toml
 from elemental.scene.tables.base import Name, Table
 from elemental.scene.tables.cameras import CameraTable, PathTable
 from elemental.scene.tables.decals import DecalTable
@@ -57,8 +57,8 @@ def read_scene_file(path: Path) -> SceneFile:
 def parse_scene_file(text: str, path: Path) -> SceneFile:
     """Check a scene file's text; raises as ``read_scene_file``."""
     try:
-        tables = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
+        tables = parse_toml(text)
+    except ValueError as error:
         raise InputError(path, "TOML", f"is broken ({error})") from error
     try:
         file = SceneFile.model_validate(tables)

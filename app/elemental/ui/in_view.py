@@ -12,7 +12,7 @@ import numpy.typing as npt
 from imgui_bundle import imgui, imguizmo
 
 from elemental.core import transforms
-from elemental.passes.camera_view import far_plane
+from elemental.passes.camera_view import clip_range
 from elemental.scene.model import Camera, FloatArray
 from elemental.scene.volumes import Volume, rotation_rows
 from elemental.ui import theme
@@ -44,10 +44,10 @@ class Lens:
     def of(cls, camera: Camera, bounds: tuple[FloatArray, FloatArray], place: Rect) -> Lens:
         """The lens of a frame that fills ``place``."""
         aspect = max(place[2] - place[0], 1.0) / max(place[3] - place[1], 1.0)
-        far = far_plane(camera, bounds)
+        near, far = clip_range(camera, bounds)
         return cls(
             transforms.inverse(camera.world_from_view),
-            transforms.perspective(camera.fov_y, aspect, camera.near, far),
+            transforms.perspective(camera.fov_y, aspect, near, far),
             place,
         )
 

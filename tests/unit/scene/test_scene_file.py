@@ -219,9 +219,16 @@ def test_mistakes(toml: str, expected: str, tmp_path: Path) -> None:
 
 
 def test_no_toml(tmp_path: Path) -> None:
-    for toml in ("a = ", "[a\n", "a = 1\na = 2"):
+    for toml, reason in (
+        ("a = ", "Invalid value (at end of document)"),
+        ("[a\n", "line 1"),
+        ("a = 1\na = 2", "Cannot overwrite a value"),
+        (f"a = {'9' * 5000}", "a number has too many digits"),
+        ("a = " + "[" * 5000, "nested too deeply"),
+    ):
         (line,) = mistakes(tmp_path, toml)
         assert line.startswith("TOML: is broken")
+        assert reason in line
 
 
 def test_not_utf_8(tmp_path: Path) -> None:

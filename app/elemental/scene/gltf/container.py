@@ -17,7 +17,7 @@ from elemental.scene.gltf.fields import Field, Report, printable
 GLB_MAGIC = b"glTF"
 GLB_HEADER = struct.Struct("<4sII")
 CHUNK_HEADER = struct.Struct("<I4s")
-SUPPORTED_MAJOR_VERSION = "2"
+SUPPORTED_MAJOR_VERSION, SUPPORTED_VERSION = "2", "2.0"
 
 _SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:")
 """Two letters at least: `C:` is a drive."""
@@ -39,6 +39,10 @@ class Document:
         version = self.root.need("asset").need("version").text()
         if version.split(".")[0] != SUPPORTED_MAJOR_VERSION:
             raise InputError(path, "asset.version", f"glTF {version[:20]} is not supported, only 2")
+        least = self.root.need("asset").text_or("minVersion", SUPPORTED_VERSION)
+        if least != SUPPORTED_VERSION:
+            reason = f"glTF {least[:20]} is not supported, only {SUPPORTED_VERSION}"
+            raise InputError(path, "asset.minVersion", reason)
         self.buffers = self.root.elements("buffers")
         self.views = self.root.elements("bufferViews")
         self._loaded: dict[int, bytes] = {}
@@ -124,8 +128,15 @@ def _parse_json(path: Path, text: bytes) -> object:
         return parsed
     except RecursionError:
         raise InputError(path, "JSON", "is nested too deeply") from None
+    except UnicodeDecodeError as error:
+        reason = f"is not UTF-8 text (byte {error.start + 1})"
+        raise InputError(path, "JSON", reason) from error
+    except json.JSONDecodeError as error:
+        reason = f"is broken ({error.msg}: line {error.lineno} column {error.colno})"
+        raise InputError(path, "JSON", reason) from error
     except ValueError as error:
-        raise InputError(path, "JSON", f"is broken ({error})") from error
+        reason = str(error) if "JSON" in str(error) else "a number has too many digits"
+        raise InputError(path, "JSON", f"is broken ({reason})") from error
 
 
 def _decode_data_uri(uri: Field, text: str) -> bytes:
