@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+import warnings
 from collections.abc import Sequence
 from dataclasses import fields
 from typing import TypeVar
@@ -24,6 +25,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
+    if not sys.warnoptions:
+        warnings.simplefilter("ignore")  # libraries' own words, which no user can act on
     words = list(sys.argv[1:] if arguments is None else arguments)
     commands = {"shot": _shot, "run": _run, "bench": _bench, "render": _render, "list": _list}
     try:

@@ -20,6 +20,8 @@ from elemental.core.rgbe import decode_rgbe
 
 ERROR_DESCRIPTOR = 2
 PNG_JPEG_WEBP = ("PNG", "JPEG", "WEBP")
+LARGEST_SIDE = 16384
+"""Texels along a side of a texture that every driver of GL 4.3 takes."""
 PNG_END = b"\0\0\0\0IEND\xaeB`\x82"
 """The last chunk [ISO 15948 11.2.5]."""
 
@@ -37,6 +39,13 @@ def read_png_jpeg_webp(source: bytes | Path, name: str | None = None) -> npt.NDA
             return _rgba8(image)
     except Exception as error:  # Pillow's decoders raise what their input makes them raise
         raise InputError(label, "", _unreadable(error, "PNG, JPEG or WebP")) from error
+
+
+def read_mask(path: Path) -> npt.NDArray[np.uint8]:
+    """A PNG, JPEG or WebP image (H, W, 4) that becomes a texture as it is. Raises InputError."""
+    pixels = read_png_jpeg_webp(path)
+    check_side(path, pixels.shape)
+    return pixels
 
 
 def check_png(path: Path) -> tuple[int, int]:
@@ -69,9 +78,17 @@ def read_environment(path: Path) -> npt.NDArray[np.float32]:
         radiance = read_exr(path)
     else:
         raise InputError(path, "", f"expected an .hdr or .exr file, not {path.name!r}")
+    check_side(path, radiance.shape)
     if not np.isfinite(radiance).all():
         raise InputError(path, "", "texels that are NaN or infinite")
     return np.maximum(radiance, 0.0)
+
+
+def check_side(path: Path, shape: tuple[int, ...]) -> None:
+    """Raises InputError for an image (H, W, ...) that is larger than textures can be."""
+    if max(shape[:2]) > LARGEST_SIDE:
+        reason = f"is {shape[1]} x {shape[0]} pixels, at most {LARGEST_SIDE} a side"
+        raise InputError(path, "", reason)
 
 
 def read_exr(path: Path) -> npt.NDArray[np.float32]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import builtins
+import json
+import sys
 from pathlib import Path
-from typing import Any
 
 import DracoPy
 import numpy as np
@@ -12,6 +12,7 @@ import pytest
 
 import shapes
 from elemental.core.errors import InputError
+from elemental.scene.load import load_scene
 from elemental.scene.model import Mesh
 from gltf_builder import GltfBuilder
 
@@ -87,16 +88,36 @@ def test_a_skin_of_compressed_vertices(tmp_path: Path) -> None:
 
 
 def test_draco_without_its_library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    real_import = builtins.__import__
-
-    def refuse(name: str, *rest: Any) -> Any:
-        if name == "DracoPy":
-            raise ImportError(name)
-        return real_import(name, *rest)
-
-    monkeypatch.setattr(builtins, "__import__", refuse)
+    monkeypatch.setitem(sys.modules, "DracoPy", None)
     with pytest.raises(InputError, match=r"KHR_draco_mesh_compression: needs DracoPy"):
         draco_builder().load(tmp_path)
+
+
+def test_without_draco_plain_data_beside_it_is_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "DracoPy", None)
+    builder = GltfBuilder()
+    builder.extend(DRACO)
+    primitive = builder.primitive(TRIANGLE)
+    extension = {"bufferView": builder.view(b"whatever"), "attributes": {"POSITION": 0}}
+    builder.node(mesh=builder.mesh({**primitive, "extensions": {DRACO: extension}}))
+    scene = builder.load(tmp_path)
+    np.testing.assert_array_equal(scene.meshes[0].positions, TRIANGLE)
+    assert len(scene.warnings) == 1
+    assert "needs DracoPy (the extra [draco]); the plain data is read" in scene.warnings[0]
+
+
+def test_a_buffer_of_meshopt_alone_names_it(tmp_path: Path) -> None:
+    builder = GltfBuilder()
+    builder.add(TRIANGLE)
+    builder.extend("EXT_meshopt_compression")
+    gltf = json.loads(builder.gltf())
+    fallback = {"EXT_meshopt_compression": {"fallback": True}}
+    gltf["buffers"][0] = {"byteLength": 36, "extensions": fallback}
+    (tmp_path / "a.gltf").write_text(json.dumps(gltf))
+    with pytest.raises(InputError, match=r"buffers\[0\]: is compressed by EXT_meshopt_compressio"):
+        load_scene(tmp_path / "a.gltf", default_lights=False)
 
 
 def test_broken_draco(tmp_path: Path) -> None:

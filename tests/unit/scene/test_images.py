@@ -19,6 +19,7 @@ from elemental.core.files import atomic_file
 from elemental.core.images import (
     read_environment,
     read_exr,
+    read_mask,
     read_png_jpeg_webp,
     write_exr,
     write_png,
@@ -225,3 +226,14 @@ def test_a_full_disk_is_told_and_leaves_the_old_file(
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, kept)
     assert [(path.name, path.read_bytes()) for path in tmp_path.iterdir()] == [(name, b"old")]
+
+
+def test_images_larger_than_textures_can_be_are_refused(tmp_path: Path) -> None:
+    wide = np.zeros((1, 16385, 3), np.uint8)
+    write_png(tmp_path / "a.png", wide)
+    write_exr(tmp_path / "a.exr", wide.astype(np.float32))
+    reason = r"is 16385 x 1 pixels, at most 16384 a side"
+    with pytest.raises(InputError, match=rf"a\.png: {reason}"):
+        read_mask(tmp_path / "a.png")
+    with pytest.raises(InputError, match=rf"a\.exr: {reason}"):
+        read_environment(tmp_path / "a.exr")

@@ -11,7 +11,7 @@ import numpy as np
 
 from elemental.core.cube_lut import CubeLut, read_cube_lut
 from elemental.core.errors import InputError
-from elemental.core.images import read_png_jpeg_webp
+from elemental.core.images import read_mask
 from elemental.core.paths import named_file
 from elemental.gpu.device import Device
 from elemental.gpu.formats import RGBA16F, SRGB8_A8
@@ -113,7 +113,7 @@ class PostTextures:
         return Lut(lut, self._device.texture(path.name, size, RGBA16F, data=texels))
 
     def _load_mask(self, path: Path) -> Mask:
-        pixels = np.ascontiguousarray(np.flipud(read_png_jpeg_webp(path)))
+        pixels = np.ascontiguousarray(np.flipud(read_mask(path)))
         height, width = pixels.shape[:2]
         levels = mip_count((width, height))
         texture = self._device.texture(

@@ -65,6 +65,11 @@ class Accessors:
             self._integers[index] = raw[:, 0]
         return self._integers[index]
 
+    def is_backed(self, reference: Field) -> bool:
+        """Whether a buffer view holds its values; else they are zeros, or stored elsewhere."""
+        accessor = self._accessors[reference.index(len(self._accessors), "accessors")]
+        return accessor.find("bufferView") is not None
+
     def is_normalized(self, reference: Field) -> bool:
         """Whether integers stand for fractions; for values stored elsewhere, as by Draco."""
         accessor = self._accessors[reference.index(len(self._accessors), "accessors")]

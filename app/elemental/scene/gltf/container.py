@@ -19,6 +19,8 @@ GLB_HEADER = struct.Struct("<4sII")
 CHUNK_HEADER = struct.Struct("<I4s")
 SUPPORTED_MAJOR_VERSION, SUPPORTED_VERSION = "2", "2.0"
 
+MESHOPT_EXTENSION = "EXT_meshopt_compression"
+
 _SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:")
 """Two letters at least: `C:` is a drive."""
 
@@ -86,6 +88,8 @@ class Document:
             source = self.resolve(uri)
         elif index == 0 and self._binary_chunk is not None:
             source = self._binary_chunk
+        elif buffer.extension(MESHOPT_EXTENSION) is not None:
+            raise buffer.error(f"is compressed by {MESHOPT_EXTENSION}, which is not supported")
         else:
             raise buffer.error("has no uri, and there is no binary chunk for it")
         if len(source) < length:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,14 @@ from elemental.scene.gltf.container import Document
 from elemental.scene.gltf.fields import Field
 
 EXTENSION = "KHR_draco_mesh_compression"
+
+
+def is_installed() -> bool:
+    """Whether the extra that decodes is there."""
+    try:
+        return importlib.util.find_spec("DracoPy") is not None
+    except ValueError:  # it was taken out of Python's list by hand
+        return False
 
 
 class DracoPrimitive:
@@ -31,7 +40,7 @@ class DracoPrimitive:
             self._attributes = {a["unique_id"]: np.asarray(a["data"]) for a in mesh.attributes}
             faces = np.asarray(mesh.faces, np.uint32)
         except Exception as error:  # the binding raises what Draco's C++ throws
-            raise extension.error(f"broken Draco data ({error})") from error
+            raise extension.error("broken Draco data") from error
         self.indices: npt.NDArray[np.uint32] = faces.reshape(-1)
 
     def attribute(self, name: str) -> npt.NDArray[Any] | None:

@@ -70,8 +70,7 @@ class Meshes:
             return None
         material = field.index_or_none("material", self._declared_materials, "materials")
         material = self._default_material() if material is None else material
-        compressed = field.extension(draco.EXTENSION)
-        source = draco.DracoPrimitive(self._document, compressed) if compressed else None
+        source = self._compressed(field)
         primitive = self._read_vertices(field, source)
         primitive.indices = self._read_indices(field, source, mode, len(primitive.positions))
         if primitive.influences is None and primitive.morphs is None:  # others may open
@@ -83,6 +82,18 @@ class Meshes:
         primitive = mesh_attributes.drop_unused_vertices(primitive)
         slot = self._materials[material].normal_texture
         return mesh_attributes.complete(primitive, name, material, slot.uv_set if slot else None)
+
+    def _compressed(self, field: Field) -> draco.DracoPrimitive | None:
+        """The Draco data of a primitive; None, perhaps with a warning, for the plain data."""
+        extension = field.extension(draco.EXTENSION)
+        if extension is None:
+            return None
+        position = field.need("attributes").need("POSITION")
+        if not draco.is_installed() and self._accessors.is_backed(position):
+            reason = f"{draco.EXTENSION} needs DracoPy (the extra [draco]); the plain data is read"
+            self._document.report.warn("meshes", reason)
+            return None
+        return draco.DracoPrimitive(self._document, extension)
 
     def _default_material(self) -> int:
         """glTF's default material, appended behind the file's own."""
