@@ -105,7 +105,7 @@ def test_a_missing_encoder_is_told_before_the_first_frame(tmp_path: Path) -> Non
         (("-o", "a.png"), "needs a frame number, as in %05d.png, or a folder"),
         (("-o", "a.avi"), "videos are .mp4; else a folder, or %05d.png"),
         (("-o", "a.%03d.jpg"), "the name must end in .png or .exr"),
-        (("-o", "a/b/c"), "is a file, not a folder"),
+        (("-o", "a/b/c"), "can't be made"),
         (("-o", "a.mp4", "--size", "33x24"), "an .mp4 needs even sides"),
         (("-o", "corner.gltf"), "is a file, not a folder"),
         (("-o", "a", "--camera", "front"), "needs A:B: the scene has no camera path"),
