@@ -10,7 +10,7 @@ vec2 decal_uv_dy = vec2(0.0);
 #include "lib/material.glsl"
 #include "lib/tangent_space.glsl"
 #include "lib/view.glsl"
-#include "shared/decal.glsl"
+#include "shared/decals.glsl"
 
 uniform usampler2D u_receivers;  // before any decal
 

@@ -15,7 +15,7 @@ vec2 decal_uv_dy = vec2(0.0);
 #include "lib/material.glsl"
 #include "lib/packing.glsl"
 #include "lib/scene_lattice.glsl"
-#include "shared/decal.glsl"
+#include "shared/decals.glsl"
 #include "shared/decal_paint.glsl"
 #ifndef MOVING
 #define MOVING 0

@@ -3,7 +3,7 @@
 // pass to PS as interpolator"]
 #include "shared/exposure.glsl"
 
-layout(std430) readonly buffer EyeState { Eye eye; };
+layout(std140) uniform EyeState { Eye eye; };  // laid out as in a storage block
 
 flat out float v_exposure;
 

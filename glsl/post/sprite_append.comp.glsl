@@ -32,5 +32,5 @@ void main() {
     uvec2 size = uvec2(textureSize(u_picture, 0));
     if (texel != size.x * size.y - 1u) return;
     uint bright = before + sums.x;
-    counts = SpriteCounts(QUAD_INDICES, min(bright, u_flare.capacity), 0u, 0, 0u, bright);
+    counts = SpriteCounts(QUAD_INDICES, min(bright, u_flare.capacity), 0u, 0, 0u, bright, 0u, 0u);
 }

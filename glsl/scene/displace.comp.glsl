@@ -9,7 +9,7 @@
 #include "lib/dispatch.glsl"
 #include "lib/material.glsl"
 #include "shared/displace.glsl"
-#include "shared/instance.glsl"
+#include "shared/instances.glsl"
 #include "shared/vertex.glsl"
 
 layout(local_size_x = 64) in;  // DEFORM_GROUP
@@ -37,11 +37,16 @@ void store_surface(uint at, vec3 v) {
     surface[at + 2u] = v.z;
 }
 
+// 0 where there is no direction, as where a displacement leaves no area.
+vec3 unit(vec3 v) {
+    return v * inversesqrt(max(dot(v, v), 1e-30));
+}
+
 vec3 displaced(MaterialInput m, Parameters p, vec3 position_ws) {
     m.position_ws = position_ws;
     vec3 offset = displace(m, p);
     float length_m = length(offset);
-    if (!(length_m > 0.0)) return position_ws;  // no number, too
+    if (length_m == 0.0 || is_fault(length_m)) return position_ws;
     return position_ws + offset * min(1.0, u_displace.farthest_m / length_m);
 }
 
@@ -57,10 +62,10 @@ void main() {
     uint at = (group.source + vertex) * POSITION_FLOATS;
     vec3 position_ws = (instance.world_from_local * vec4(load_position(at), 1.0)).xyz;
     at = (group.source + vertex) * SURFACE_FLOATS;
-    vec3 n = normalize(mat3(instance.normal_from_local) * load_surface(at));
+    vec3 n = unit(mat3(instance.normal_from_local) * load_surface(at));
     vec3 t = linear * load_surface(at + 3u);
     t -= n * dot(n, t);
-    if (!(dot(t, t) > 1e-12)) t = cross(n, abs(n.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0));
+    if (dot(t, t) <= 1e-12) t = cross(n, abs(n.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0));
     t = normalize(t);
     vec3 b = cross(n, t);
     vec2 uv0 = vec2(surface[at + 7u], surface[at + 8u]);
@@ -81,6 +86,6 @@ void main() {
     vec3 origin = instance.world_from_local[3].xyz;
     store_position((group.target + vertex) * POSITION_FLOATS, local_from_world * (moved - origin));
     at = (group.target + vertex) * SURFACE_FLOATS;
-    store_surface(at, normalize(transpose(linear) * normal_ws));
-    store_surface(at + 3u, normalize(local_from_world * along_t));
+    store_surface(at, unit(transpose(linear) * normal_ws));
+    store_surface(at + 3u, unit(local_from_world * along_t));
 }

@@ -1,6 +1,5 @@
 // Depth of a mesh in one shadow view; the alpha test's inputs where there is one.
-#include "shared/instance.glsl"
-#include "shared/shadow.glsl"
+#include "lib/instance.glsl"
 
 #include "shared/shadow_pass.glsl"
 
@@ -22,14 +21,14 @@ flat out uint v_material;
 #endif
 
 void main() {
-    vec4 p_ws = instances[a_instance].world_from_local * vec4(a_position, 1.0);
-    gl_Position = shadow_views[u_pass.view].clip_from_world * p_ws;
+    vec4 p_ws = instance_world_from_local(a_instance) * vec4(a_position, 1.0);
+    gl_Position = u_pass.clip_from_world * p_ws;
 #ifdef ALPHA_MASK
     v_position_ws = p_ws.xyz;
-    v_normal_ws = mat3(instances[a_instance].normal_from_local) * a_normal;
+    v_normal_ws = instance_normal_from_local(a_instance) * a_normal;
     v_uv0 = a_uv0;
     v_uv1 = a_uv1;
     v_color = a_color;
-    v_material = instances[a_instance].material;
+    v_material = instance_material(a_instance);
 #endif
 }

@@ -17,4 +17,5 @@ struct Decal {
     uint reserved2;
 };
 
-layout(std430) readonly buffer Decals { Decal decals[]; };
+const uint DECAL_TEXELS = 10u;      // of 16 bytes each
+const uint DECAL_WORLD_TEXEL = 4u;  // the first of world_from_decal

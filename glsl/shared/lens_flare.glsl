@@ -21,4 +21,6 @@ struct SpriteCounts {
     int base_vertex;
     uint base_instance;
     uint bright;  // texels above the threshold, sprites or not
+    uint reserved0;
+    uint reserved1;
 };

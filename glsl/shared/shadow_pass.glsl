@@ -1,4 +1,4 @@
 // One drawing of one shadow view.
 layout(std140) uniform ShadowPass {
-    uint view;  // index into ShadowViews
+    mat4 clip_from_world;
 } u_pass;

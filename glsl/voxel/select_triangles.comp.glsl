@@ -4,7 +4,7 @@
 
 #include "lib/dispatch.glsl"
 #include "lib/scene_lattice.glsl"
-#include "shared/instance.glsl"
+#include "shared/instances.glsl"
 #include "shared/triangle_lists.glsl"
 
 layout(local_size_x = 64) in;

@@ -90,6 +90,11 @@ class Steps:
         shader = self.sources.compute("o[0] = u.v.x;", head)
         graph.compute(shader, reads={"U": self.buffer}, writes={"Out": self._out()}, groups=1)
 
+    def texels(self, graph: Graph) -> None:
+        head = "uniform usamplerBuffer u_b;" + WRITE
+        shader = self.sources.compute("o[0] = texelFetch(u_b, 0).x;", head)
+        graph.compute(shader, reads={"u_b": self.buffer}, writes={"Out": self._out()}, groups=1)
+
     def clear(self, graph: Graph) -> None:
         graph.clear_buffer(self.buffer)
 
@@ -168,6 +173,7 @@ STORAGE, IMAGE, FETCH = (
         ("read read", []),
         ("write write", [STORAGE]),
         ("write uniform", [c.UNIFORM_BARRIER]),
+        ("write texels", [c.TEXTURE_FETCH_BARRIER]),
         ("write clear", [c.BUFFER_UPDATE_BARRIER]),
         ("clear read", []),
         ("clear write", [STORAGE]),

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from elemental.gpu.binding import BlockLook, GraphError, SamplerLook
+from elemental.gpu.binding import BlockLook, GraphError, SamplerLook, TexelsLook
 from elemental.gpu.gl import MAX_WORK_GROUPS
 from elemental.gpu.passes import Attachment, RasterPass
 from elemental.gpu.program import Program
@@ -77,7 +77,7 @@ def refuse_feedback(node: RasterPass, attached: Attachment, name: str) -> None:
     """
     index, target_level, target_layer = attached
     for look, resource in node.bindings:
-        if resource != index or isinstance(look, BlockLook):
+        if resource != index or isinstance(look, (BlockLook, TexelsLook)):
             continue
         if isinstance(look, SamplerLook):
             _, level, levels, layer, _ = look.view or (0, 0, _ALL_LEVELS, -1, False)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from elemental.gpu import gl as c
-from elemental.gpu.binding import BlockLook, ImageLook, Look, SamplerLook
+from elemental.gpu.binding import BlockLook, ImageLook, Look, SamplerLook, TexelsLook
 from elemental.gpu.refs import SamplerKey, sampler_parameters
 from elemental.gpu.resources import Texture
 
@@ -45,23 +45,27 @@ class Binder:
                 if self._blocks.get(place) != glo:
                     self._blocks[place] = glo
                     gl.glBindBufferBase(look.target, look.unit, glo)
+            elif look.__class__ is TexelsLook:
+                self._bind_texture(look.unit, c.TEXTURE_BUFFER, physical[resource].as_texels())
             elif look.__class__ is ImageLook:
                 self._bind_image(look, physical[resource])
 
     def _bind_sampler(self, look: SamplerLook, texture: Texture) -> None:
-        gl = self.gl
         unit = look.unit
         glo = texture.glo if look.view is None else texture.view(*look.view)
+        self._bind_texture(unit, look.target, glo)
+        sampler = self._samplers.get(look.sampler) or self._make_sampler(look.sampler)
+        if self._unit_samplers.get(unit) != sampler:
+            self._unit_samplers[unit] = sampler
+            self.gl.glBindSampler(unit, sampler)
+
+    def _bind_texture(self, unit: int, target: int, glo: int) -> None:
         if self._units.get(unit) != glo:
             self._units[unit] = glo
             if self._active_unit != unit:
                 self._active_unit = unit
-                gl.glActiveTexture(c.TEXTURE0 + unit)
-            gl.glBindTexture(look.target, glo)
-        sampler = self._samplers.get(look.sampler) or self._make_sampler(look.sampler)
-        if self._unit_samplers.get(unit) != sampler:
-            self._unit_samplers[unit] = sampler
-            gl.glBindSampler(unit, sampler)
+                self.gl.glActiveTexture(c.TEXTURE0 + unit)
+            self.gl.glBindTexture(target, glo)
 
     def _bind_image(self, look: ImageLook, texture: Texture) -> None:
         glo = texture.glo if look.view is None else texture.view(*look.view)

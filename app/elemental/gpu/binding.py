@@ -71,7 +71,16 @@ class BlockLook:
     barrier: int
 
 
-Look = SamplerLook | ImageLook | BlockLook
+@dataclass(frozen=True, slots=True, eq=False)
+class TexelsLook:
+    """A buffer seen through a usamplerBuffer: 16 bytes a texel."""
+
+    unit: int
+    barrier: int = c.TEXTURE_FETCH_BARRIER
+
+
+TEXEL_BYTES = 16
+Look = SamplerLook | ImageLook | BlockLook | TexelsLook
 MOST_LOOKS = 64
 """Looks that a slot remembers: several times what the busiest slot of a steady frame has."""
 Bound = tuple[Look, AnyTexture | AnyBuffer]
@@ -154,6 +163,8 @@ def looks(slot: Slot, ref: Ref, program: Program) -> Sequence[Bound]:
             return ((known, ref),)
     if slot.kind in (STORAGE_BLOCK, UNIFORM_BLOCK):
         return (_block(slot, ref, program),)
+    if isinstance(ref, (Buffer, BufferHandle)):
+        return (_texels(slot, ref, program),)
     bound = _elements(slot, ref, program)
     if isinstance(ref, (Texture, TextureHandle)):
         _remember(slot, ref.desc, bound[0][0])
@@ -191,6 +202,20 @@ def _block(slot: Slot, ref: Ref, program: Program) -> Bound:
         barrier = c.SHADER_STORAGE_BARRIER if storage else c.UNIFORM_BARRIER
         look = slot.looks[None] = BlockLook(slot.unit, target, barrier)
     return look, ref
+
+
+def _texels(slot: Slot, buffer: AnyBuffer, program: Program) -> Bound:
+    if slot.kind != SAMPLER or (slot.active and slot.target != c.TEXTURE_BUFFER):
+        raise GraphError(f"{program.shader!r}: {slot.name} needs a texture, not {buffer!r}")
+    if buffer.nbytes > program.texel_limit * TEXEL_BYTES:
+        raise GraphError(
+            f"{program.shader!r}: {slot.name}: {buffer.name} has {buffer.nbytes} bytes, this "
+            f"driver's buffer textures at most {program.texel_limit * TEXEL_BYTES}"
+        )
+    look: TexelsLook | None = slot.looks.get(None)
+    if look is None:
+        look = slot.looks[None] = TexelsLook(slot.unit)
+    return look, buffer
 
 
 def _texture(slot: Slot, ref: object, offset: int, program: Program) -> Bound:
@@ -234,6 +259,8 @@ def _sampler_look(
         raise ValueError("is sampled with compare" if compare else "is sampled without compare")
     if layer >= 0 and desc.target == c.TEXTURE_3D:
         raise ValueError("is 3D: a slice can't be sampled alone")
+    if slot.target == c.TEXTURE_BUFFER:
+        raise ValueError("is no buffer")
     target = c.TEXTURE_2D if layer >= 0 else desc.target
     if slot.active and target != slot.target:
         _check_viewable(slot, desc, layer)

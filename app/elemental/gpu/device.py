@@ -55,11 +55,12 @@ class Device:
         if self.info.software:
             keep_freed_memory()
         self.storage_limit = self.gl.integer(c.MAX_SHADER_STORAGE_BLOCK_SIZE)
+        self.texel_limit = self.gl.integer(c.MAX_TEXTURE_BUFFER_SIZE)
         self.largest_texture_px = self.gl.integer(c.MAX_TEXTURE_SIZE)
         """Longest side of a texture."""
         self.max_anisotropy = float(ctx.max_anisotropy)
-        self.scratch_unit = ctx.max_texture_units - 1
-        """Texture unit of uploads and allocations, used by no pass."""
+        self.scratch_unit = self.gl.integer(c.MAX_COMBINED_TEXTURE_IMAGE_UNITS) - 1
+        """Texture unit of uploads and allocations, beyond those of one stage: used by no pass."""
         self.shader_root: Path = glsl_root()
         self.frame = 0
         """Number of graphs executed."""

@@ -17,6 +17,7 @@ TEXTURE_3D = 0x806F
 TEXTURE_2D_ARRAY = 0x8C1A
 TEXTURE_CUBE_MAP = 0x8513
 TEXTURE_CUBE_MAP_ARRAY = 0x9009
+TEXTURE_BUFFER = 0x8C2A
 TEXTURE_CUBE_MAP_POSITIVE_X = 0x8515
 TEXTURE0 = 0x84C0
 
@@ -72,6 +73,7 @@ SHADER_STORAGE_BUFFER = 0x90D2
 PIXEL_PACK_BUFFER = 0x88EB
 PIXEL_UNPACK_BUFFER = 0x88EC
 R32UI = 0x8236
+RGBA32UI = 0x8D70
 RED_INTEGER = 0x8D94
 UNSIGNED_INT = 0x1405
 
@@ -134,6 +136,8 @@ OUT_OF_MEMORY = 0x0505
 UNIFORM_BUFFER_OFFSET_ALIGNMENT = 0x8A34
 MAX_TEXTURE_SIZE = 0x0D33
 MAX_SHADER_STORAGE_BLOCK_SIZE = 0x90DE
+MAX_TEXTURE_BUFFER_SIZE = 0x8C2B
+MAX_COMBINED_TEXTURE_IMAGE_UNITS = 0x8B4D
 COMPUTE_WORK_GROUP_SIZE = 0x8267
 MAX_WORK_GROUPS = 65535
 """Groups a dimension that GL 4.3 guarantees; used on every driver, so that all behave alike."""
@@ -194,6 +198,7 @@ _FUNCTIONS: dict[str, tuple[Any, ...]] = {
     "glActiveTexture": (None, _U),
     "glBindTexture": (None, _U, _U),
     "glTexParameteri": (None, _U, _U, _I),
+    "glTexBuffer": (None, _U, _U, _U),
     "glTexStorage2D": (None, _U, _I, _U, _I, _I),
     "glTexStorage3D": (None, _U, _I, _U, _I, _I, _I),
     "glTexSubImage2D": (None, _U, _I, _I, _I, _I, _I, _U, _U, _P),

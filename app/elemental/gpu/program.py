@@ -33,10 +33,12 @@ LINEAR_DISPATCH = "lib/dispatch.glsl"
 
 _2D, _3D, _ARRAY = c.TEXTURE_2D, c.TEXTURE_3D, c.TEXTURE_2D_ARRAY
 _CUBE, _CUBE_ARRAY = c.TEXTURE_CUBE_MAP, c.TEXTURE_CUBE_MAP_ARRAY
+_TEXELS = c.TEXTURE_BUFFER
 _SAMPLER_TARGETS = {
     0x8B5E: _2D, 0x8B5F: _3D, 0x8B60: _CUBE, 0x8B62: _2D, 0x8DC1: _ARRAY, 0x8DC4: _ARRAY,
     0x8DC5: _CUBE, 0x900C: _CUBE_ARRAY, 0x900D: _CUBE_ARRAY,
     0x8DCA: _2D, 0x8DCB: _3D, 0x8DCC: _CUBE, 0x8DCF: _ARRAY, 0x900E: _CUBE_ARRAY,
+    0x8DC2: _TEXELS, 0x8DD0: _TEXELS, 0x8DD8: _TEXELS,
     0x8DD2: _2D, 0x8DD3: _3D, 0x8DD4: _CUBE, 0x8DD7: _ARRAY, 0x900F: _CUBE_ARRAY,
 }  # fmt: skip
 _SHADOW_SAMPLERS = {0x8B62, 0x8DC4, 0x8DC5, 0x900D}
@@ -93,6 +95,8 @@ class Program:
     """Whether it includes lib/dispatch.glsl and so may fold a long dispatch."""
     storage_limit: int
     """Bytes of the largest storage block of the driver."""
+    texel_limit: int
+    """Texels of the driver's largest buffer texture."""
     plans: dict[Any, Any] = field(default_factory=dict)
     """Binding plans of the frame graph by the names given; cleared with the program."""
     vertex_arrays: dict[int, moderngl.VertexArray] = field(default_factory=dict)
@@ -129,9 +133,11 @@ def compile_program(
         raise _blamed(error, snippets or {}) from None
     device.gl.label(c.LABEL_PROGRAM, mgl.glo, repr(shader))
     declared: dict[str, Declared] = {}
-    for source in sources.values():
-        declared.update(declared_resources(source.text))
     try:
+        for stage, source in sources.items():
+            in_stage = declared_resources(source.text)
+            _check_stage(stage, in_stage, shader)
+            declared.update(in_stage)
         slots = _reflect(device, mgl.glo, declared, shader)
     except ShaderError:
         mgl.release()
@@ -143,7 +149,22 @@ def compile_program(
         local_size = (values[0], values[1], values[2])
     files = tuple(dict.fromkeys(file for source in sources.values() for file in source.files))
     linear = any(file.as_posix().endswith(LINEAR_DISPATCH) for file in files)
-    return Program(shader, mgl, slots, local_size, files, linear, device.storage_limit)
+    limits = (device.storage_limit, device.texel_limit)
+    return Program(shader, mgl, slots, local_size, files, linear, *limits)
+
+
+def _check_stage(stage: str, declared: Mapping[str, Declared], shader: Shader) -> None:
+    """Refuse what drivers of GL 4.3 may lack before the fragment shader: their least numbers of
+    storage blocks and images there are 0 [GL 4.3, tables 23.57 and 23.59]."""
+    if stage in ("fragment", "compute"):
+        return
+    lacking = [name for name, item in declared.items() if item.kind in (STORAGE_BLOCK, IMAGE)]
+    if lacking:
+        names = ", ".join(sorted(lacking))
+        raise ShaderError(
+            f"{shader!r}: {names}: not every driver has storage blocks or images in a {stage} "
+            "shader; a usamplerBuffer or a uniform block can take the same buffer"
+        )
 
 
 def _link(ctx: moderngl.Context, shader: Shader, sources: dict[str, Source]) -> Any:

@@ -165,7 +165,7 @@ class Buffer:
 
     __slots__ = (
         "access_at", "category", "device", "glo", "graph", "index", "mgl", "name", "nbytes",
-        "ordered_at", "serial", "written_at",
+        "ordered_at", "serial", "texels", "written_at",
     )  # fmt: skip
 
     def __init__(
@@ -183,6 +183,8 @@ class Buffer:
         self.index = -1
         self.written_at = self.access_at = self.ordered_at = 0
         given: dict[str, Any] = {"reserve" if isinstance(contents, int) else "data": contents}
+        self.texels = 0
+        """GL name of the buffer texture, once it was asked for."""
         self.mgl: moderngl.Buffer = device.ctx.buffer(**given, dynamic=dynamic)
         self.glo: int = self.mgl.glo
         device.gl.label(c.LABEL_BUFFER, self.glo, name)
@@ -205,10 +207,23 @@ class Buffer:
         self.device.gl.glMemoryBarrier(c.ALL_BARRIERS)
         return np.frombuffer(self.mgl.read(count * element.itemsize, offset), element)
 
+    def as_texels(self) -> int:
+        """GL name of a buffer texture of it: RGBA32UI, 16 bytes a texel."""
+        if not self.texels:
+            gl = self.device.gl
+            self.texels = gl.generate("Textures")
+            self.device.bind_for_update(c.TEXTURE_BUFFER, self.texels)
+            gl.glTexBuffer(c.TEXTURE_BUFFER, c.RGBA32UI, self.glo)
+            gl.label(c.LABEL_TEXTURE, self.texels, f"{self.name} texels")
+        return self.texels
+
     def release(self) -> None:
-        """Free the buffer."""
+        """Free the buffer and its texture."""
         if self.glo:
             self.device.released(self)
+            if self.texels:
+                self.device.gl.delete("Textures", self.texels)
+                self.texels = 0
             self.mgl.release()
             self.glo = 0
 

@@ -128,6 +128,7 @@ class Decals:
                 reads={
                     "u_receivers": receivers,
                     "Decals": self._rows,
+                    "u_decals": self._rows,
                     **meshes.materials.reads(),
                 },
                 writes=meshes.materials.writes(batches),

@@ -129,7 +129,7 @@ def _draw_occluders(g: Graph, view: Block, scene: GpuScene, depth: TextureHandle
         DEPTH,
         "gbuffer.depth",
         depth=depth,
-        reads={"Instances": scene.instances},
+        reads={"u_instances": scene.instances},
         params={"View": view},
         state=STATE,
         clear_depth=1.0,

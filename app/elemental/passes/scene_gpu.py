@@ -161,7 +161,7 @@ class GpuScene(SceneDraws):
 
     def reads(self) -> dict[str, Ref]:
         """What every pass that draws meshes with their materials reads."""
-        return {"Instances": self.instances, **self.materials.reads()}
+        return {"u_instances": self.instances, **self.materials.reads()}
 
     def params(self) -> dict[str, Block]:
         """The uniform blocks of every pass that draws meshes with their materials."""

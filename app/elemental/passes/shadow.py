@@ -240,9 +240,10 @@ def _rectangle(tile: Tile) -> tuple[int, int, int, int]:
 
 def _draw_view(g: Graph, maps: ShadowMaps, scene: GpuScene, plan: ShadowPlan, number: int) -> None:
     tile, name = plan.tiles[number], f"shadow.{plan.names[number]}"
-    scene.look(f"shadow.{number}", plan.views[number]["clip_from_world"].T)
+    clip_from_world = plan.views[number]["clip_from_world"].T
+    scene.look(f"shadow.{number}", clip_from_world)
     still = maps.still_target(plan, number)
-    draw = partial(_draw_casters, g, maps, scene, number, tile)
+    draw = partial(_draw_casters, g, scene, clip_from_world, f"shadow.{number}", tile)
     if still is None:
         draw(name, maps.target(plan, number), None)
         return
@@ -255,9 +256,9 @@ def _draw_view(g: Graph, maps: ShadowMaps, scene: GpuScene, plan: ShadowPlan, nu
 
 def _draw_casters(
     g: Graph,
-    maps: ShadowMaps,
     scene: GpuScene,
-    number: int,
+    clip_from_world: Array,
+    viewer: str,
     tile: Tile,
     name: str,
     target: Layer,
@@ -267,14 +268,12 @@ def _draw_casters(
 
     ``dynamic`` None: of everything.
     """
-    viewer = f"shadow.{number}"
 
     def draw_opaque(enc: Encoder) -> None:
         scene.draw_positions(enc, seen_by=viewer, dynamic=dynamic)
 
-    views = {"ShadowViews": maps.reads()["ShadowViews"]}
-    reads = {"Instances": scene.instances, **views}
-    params = {"ShadowPass": pack(layouts().block("ShadowPass"), view=np.uint32(number))}
+    reads = {"u_instances": scene.instances}
+    params = {"ShadowPass": pack(layouts().block("ShadowPass"), clip_from_world=clip_from_world)}
     place = _rectangle(tile)
     g.raster(
         DEPTH, name, depth=target, reads=reads, params=params, state=STATE,
@@ -292,7 +291,7 @@ def _draw_casters(
             scene.draw(enc, batches, texture_mask=mask, cull=False, seen_by=viewer)
 
         g.raster(
-            shader, f"{name}.masked", depth=target, reads={**scene.reads(), **views},
+            shader, f"{name}.masked", depth=target, reads=scene.reads(),
             writes=scene.materials.writes(batches), params=params | scene.params(), state=STATE,
             tile=place, draw=draw_masked,
         )  # fmt: skip

@@ -68,7 +68,7 @@ def motion_blur(
             OBJECTS,
             color=motion,
             depth=depth,
-            reads={"Instances": scene.instances},
+            reads={"u_instances": scene.instances},
             params=params,
             state=VISIBLE,
             draw=draw,

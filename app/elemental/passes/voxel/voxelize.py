@@ -123,7 +123,7 @@ def append_fragments(
                 f"voxelize.{what}{name}.textures{mask}{material}",
                 size=(side, side),
                 state=BOTH_SIDES,
-                reads=scene.reads(),
+                reads=scene.materials.reads(),
                 writes={
                     "State": Unordered(octree.state),  # counted by atomics; each has a place
                     "Fragments": Unordered(fragments),

@@ -1,0 +1,3 @@
+#include "shared/instance.glsl"
+
+layout(std430) readonly buffer Instances { Instance instances[]; };
