@@ -14,5 +14,5 @@ void main() {
     if (item >= specular.listed) return;
     ivec2 pixel = pixel_of_code(specular_pixels[item]);
     GlossySurface s = glossy_surface(pixel);
-    imageStore(o_specular_gi, pixel, specular_cone(s.p_ws, s.normal, s.half_angle));
+    imageStore(o_specular_gi, pixel, min(specular_cone(s.p_ws, s.normal, s.half_angle), HALF_MAX));
 }

@@ -10,6 +10,7 @@
 #define CONE_SPLIT 1
 
 #include "lib/direct.glsl"
+#include "lib/finite.glsl"
 #include "lib/material.glsl"
 #include "lib/sky.glsl"
 #include "lib/tangent_space.glsl"
@@ -115,5 +116,5 @@ void main() {
         radiance += direct.diffuse + direct.specular;
         radiance += indirect_light(point, s.opacity) * s.ambient_occlusion;
     }
-    o_radiance = vec4(min(radiance, HALF_MAX) * s.opacity, s.opacity);
+    o_radiance = vec4(finite_radiance(radiance) * s.opacity, s.opacity);
 }

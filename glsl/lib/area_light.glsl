@@ -134,7 +134,7 @@ vec3 area_lobe_radiance(vec3 p_ws, vec3 normal, vec3 direction, float half_angle
         for (int k = 0; k < 4; ++k) {
             vec2 at = vec2(k & 1, k >> 1) * 0.5 + 0.25;
             vec3 path = face.corner_ws + at.x * face.edge_u_ws + at.y * face.edge_v_ws - p_ws;
-            float squared = dot(path, path);
+            float squared = max(dot(path, path), 1e-12);
             vec3 to_light = path * inversesqrt(squared);
             float facing = -dot(front, to_light);
             if (face.both_sides != 0.0) facing = abs(facing);
@@ -187,9 +187,10 @@ AreaHit hit_area_lights(vec3 origin, vec3 direction, float half_angle, float fro
     if (nearest == 1e30) return hit;
     for (int i = 0; i < u_area_lights.count; ++i) {
         vec2 met = meet_face(u_area_lights.faces[i], origin, direction, half_angle);
-        if (met.y <= 0.0 || met.x < nearest || met.x > nearest + depth_m) continue;
+        // Not "< nearest": computed twice, the nearest may come out nearer than itself.
+        if (met.y <= 0.0 || met.x <= from_m || met.x > nearest + depth_m) continue;
         hit.share += met.y;
         hit.radiance += met.y * u_area_lights.faces[i].radiance;
     }
-    return AreaHit(nearest, min(hit.share, 1.0), hit.radiance / hit.share);
+    return AreaHit(nearest, min(hit.share, 1.0), hit.radiance / max(hit.share, 1e-6));
 }

@@ -19,7 +19,7 @@ float area_visibility(vec3 p_ws, vec3 normal, int face, vec3 point_ws, float rad
     float voxel = u_octree.voxel_m;
     vec3 origin = p_ws + normal * (AREA_NORMAL_BIAS * voxel);
     vec3 path = point_ws - origin;
-    float way = length(path);
+    float way = max(length(path), 1e-6);
     vec3 direction = path / way;
     float height = abs(height_over_face(u_area_lights.faces[face], origin));
     float cosine = height / way;

@@ -111,7 +111,8 @@ DirectLight reflect_sample(ShadingPoint p, vec3 to_light, vec3 irradiance, float
     float n_o_l = clamp(dot(p.n_ws, to_light), 0.0, 1.0);
     // Beyond the light's reach, or from behind, where the half vector may be none.
     if (n_o_l <= 0.0 || irradiance == vec3(0.0)) return DirectLight(vec3(0.0), vec3(0.0));
-    vec3 h = normalize(to_light + p.to_eye);
+    vec3 between = to_light + p.to_eye;  // 0 where a bump faces a light straight behind it
+    vec3 h = between * inversesqrt(max(dot(between, between), 1e-12));
     DirectLight reflected;
     reflected.diffuse = irradiance * n_o_l * p.albedo / PI;
     if (CLOTH_IS_USED && p.lighting_model == LIGHTING_CLOTH) {

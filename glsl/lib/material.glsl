@@ -6,6 +6,7 @@
 // that may have a texture; the fetches of the others are left out. MATERIAL_FAULTS 1: a surface that
 // is no number is shown as the fallback, and told in the buffer MaterialFaults.
 #include "shared/material.glsl"
+#include "lib/finite.glsl"
 #include "lib/refraction.glsl"
 #include "lib/surface.glsl"
 
@@ -126,11 +127,6 @@ Parameters material_parameters(uint material) { return Parameters(0.0); }
 void material(inout Surface s, MaterialInput m, Parameters p) { s = standard_surface(m); }
 vec3 displace(MaterialInput m, Parameters p) { return vec3(0.0); }
 #endif
-
-// Infinite or not a number, by its bits: compilers may take isnan() for false.
-bool is_fault(float x) {
-    return (floatBitsToUint(x) & 0x7f800000u) == 0x7f800000u;
-}
 
 #if MATERIAL_FAULTS
 bool is_faulty(Surface s) {

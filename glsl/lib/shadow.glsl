@@ -76,7 +76,8 @@ uint view_of(Light light, vec3 p_ws) {
 
 vec3 direction_to(Light light, vec3 p_ws) {
     if (light.kind == LIGHT_DIRECTIONAL) return -light.direction_ws;
-    return normalize(light.position_ws - p_ws);
+    vec3 way = light.position_ws - p_ws;
+    return way * inversesqrt(max(dot(way, way), 1e-12));
 }
 
 // Visibility 0..1 of a light from a point with the surface normal n_ws. offset_m: a further step

@@ -13,6 +13,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "lib/direct.glsl"
+#include "lib/finite.glsl"
 #include "lib/gbuffer.glsl"
 #include "lib/view.glsl"
 #if SKY
@@ -65,5 +66,5 @@ void main() {
     if (s.lighting_model == LIGHTING_UNLIT) return;
     vec4 emission = imageLoad(u_scene_color, pixel);
     vec3 radiance = emission.rgb + shade_surface(s, position_ws_at(uv, depth), pixel);
-    imageStore(u_scene_color, pixel, vec4(min(radiance, HALF_MAX), 1.0));
+    imageStore(u_scene_color, pixel, vec4(finite_radiance(radiance), 1.0));
 }

@@ -1,5 +1,6 @@
 // A target as the buffer viewer shows it: one or three channels over a range, texels as squares.
 #include "lib/false_color.glsl"
+#include "lib/finite.glsl"
 #include "lib/inspect.glsl"
 #include "lib/tonemap.glsl"
 
@@ -32,7 +33,7 @@ void main() {
     } else if (u_inspect.channel != CHANNEL_RGB) {
         shown = vec3(values[u_inspect.channel - 1u]);
     }
-    bool broken = any(isnan(shown)) || any(isinf(shown));
+    bool broken = is_fault(shown.r) || is_fault(shown.g) || is_fault(shown.b);
     shown = (shown - u_inspect.low) / (u_inspect.high - u_inspect.low);
     if (u_inspect.colors == COLORS_ENCODED) {
         shown = srgb_encode(clamp(shown, 0.0, 1.0));
