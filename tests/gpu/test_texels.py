@@ -1,4 +1,4 @@
-"""Buffers as vertex shaders read them: by texels and as uniform blocks, for want of storage blocks."""
+"""Buffers as vertex shaders read them: by texels and as uniform blocks."""
 
 from __future__ import annotations
 
