@@ -14,6 +14,7 @@ from elemental.gpu.device import Device
 from elemental.scene.ies import LightProfile
 from elemental.scene.model import Camera, Decal, Environment, Instance, Light, Scene
 from elemental.scene.scene_decals import box_matrix
+from elemental.scene.volumes import Volume
 from elemental.settings import Settings
 from gpu.rig import IDENTITY, at, material, scene, sun, vector
 from gpu.voxel.scenes import colored, glowing, part, turned
@@ -119,6 +120,25 @@ def stained_room() -> Scene:
     return made
 
 
+def room_in_volumes() -> Scene:
+    """The coloured room under two volumes: one everywhere, one that the eye is half out of."""
+    made = colored_room()
+    evening = {"color_grading.lut": "evening.cube", "vignette.intensity": 0.8}
+    cold = {"exposure": 1.0, "scene_color.tint": (0.4, 0.8, 1.3), "bloom.intensity": 4.0}
+    made.volumes = [
+        Volume("evening", unbound=True, blend_weight=0.75, overrides=evening),
+        Volume(
+            "cold",
+            "sphere",
+            center=(0.3, 0.5, 0.4),
+            radius=2.0,
+            blend_radius=2.0,
+            overrides=cold,
+        ),
+    ]
+    return made
+
+
 def lamplit_corner() -> Scene:
     """Nine lights, so that they are culled: small ones by their ranges, a warm bulb with penumbras,
     and a wall washer with a profile, in a budget that has them share layers of shadow maps."""
@@ -168,6 +188,7 @@ SCENES: dict[str, tuple[Callable[[], Scene], dict[str, Any]]] = {
     "spotlit_corner": (spotlit_corner, {"exposure": 1.0}),
     "lamplit_corner": (lamplit_corner, {"exposure": 1.0, "shadow.budget": 8}),
     "stained_room": (stained_room, {"exposure": 0.5}),
+    "room_in_volumes": (room_in_volumes, {}),
     "colored_room_lens": (colored_room, LENS),
     "sunlit_plaza_lens": (sunlit_plaza, LENS),
 }
