@@ -1,7 +1,8 @@
-"""PP-11, AP-05: the volumes of the walk that comes along, by its file alone."""
+"""PP-11: the volumes of the walk that comes along, by its file alone."""
 
 from __future__ import annotations
 
+import itertools
 import tomllib
 from pathlib import Path
 
@@ -27,7 +28,7 @@ def volumes(path: Path = PATH) -> tuple[Volume, ...]:
 def eyes() -> list[tuple[float, float, float]]:
     """Along the straight lines between the path's keys."""
     keys = [np.array(key["eye"]) for key in tomllib.loads(PATH.read_text())["camera_path"]["keys"]]
-    ways = [a + (b - a) * s / STEPS for a, b in zip(keys, keys[1:], strict=False)
+    ways = [a + (b - a) * s / STEPS for a, b in itertools.pairwise(keys)
             for s in range(STEPS)]  # fmt: skip
     return [(float(x), float(y), float(z)) for x, y, z in ways]
 
