@@ -1,17 +1,20 @@
 """Writes the shapes that materials are shown on: `python tools/make_material_ball.py`.
 
 ball.glb: a ball with a groove on a foot, in a studio whose floor curves up into a wall. leaf.glb: a
-leaf of one sheet and a bowl with walls a few millimetres thick, to be lit from behind.
+leaf of one sheet and a bowl with walls a few millimetres thick, to be lit from behind. veins.png:
+how much of that light the leaf lets through.
 """
 
 from __future__ import annotations
 
+import io
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image
 
 from atrium.glb import GlbWriter
 from atrium.mesh import Mesh
@@ -27,6 +30,8 @@ BALL_CENTRE_M = 0.56
 GROOVE_DEG = (-38.0, -30.0)
 """Latitudes between which the ball is cut in: an edge, and a place that light hardly reaches."""
 GROOVE_RADIUS_M = 0.44
+VEINS, VEIN_TEXELS = 9, 512
+"""Of the leaf, on each side of its rib; and of a side of their picture."""
 
 
 def surface(points: Points, uv_scale: tuple[float, float], smooth_seams: bool = True) -> Mesh:
@@ -114,6 +119,23 @@ def leaf() -> Mesh:
     return surface(np.stack([x, 0.08 + 0.7 * t, -z], axis=-1), (1.0, 1.0), smooth_seams=False)
 
 
+def veins() -> bytes:
+    """How light passes the leaf: a rib, veins that run forward from it, and the
+    fine net between them. Columns go from the leaf's foot to its tip, rows across it."""
+    centre = (np.arange(VEIN_TEXELS) + 0.5) / VEIN_TEXELS
+    along, across = np.meshgrid(centre, np.abs(2.0 * centre - 1.0))
+    rib = np.exp(-((across / (0.035 * (1.2 - along))) ** 2))
+    phase = (along - 0.32 * across**0.8) * VEINS
+    off = np.abs(phase - np.round(phase)) / VEINS
+    vein = 0.8 * np.exp(-((off / (0.007 * (1.15 - 0.7 * across))) ** 2))
+    cells = np.sin(2.0 * np.pi * phase * 3.0) * np.sin(2.0 * np.pi * across * 17.0 + 4.0 * phase)
+    net = 0.22 * np.exp(-((cells / 0.22) ** 2))
+    passes = 1.0 - 0.78 * np.maximum(np.maximum(rib, vein), net)
+    stream = io.BytesIO()
+    Image.fromarray(np.round(255.0 * passes).astype(np.uint8)).save(stream, "PNG", optimize=True)
+    return stream.getvalue()
+
+
 def bowl_profile() -> list[tuple[float, float]]:
     """A bowl from its foot up its outside and down its inside; its wall thins towards the rim."""
     outside, inside = [], []
@@ -162,6 +184,7 @@ def files() -> dict[str, bytes]:
     ]
     return {
         "ball.glb": glb("ball", ball, [material("Ball", (0.75, 0.2, 0.12), 0.35), studio_paint]),
+        "veins.png": veins(),
         "leaf.glb": glb(
             "leaf",
             thin,

@@ -1,7 +1,7 @@
 """Writes what `surfaces.toml` shows decals and glass on: `python tools/make_surfaces.py`.
 
-room.glb: a floor, a wall that curves around it, pedestals. glass.glb: a clear ball, a frosted one,
-a bottle and a window pane. PNG files: the decals' pictures.
+room.glb: a floor and a wall that curves around it. pedestals.glb: what glass stands on. glass.glb:
+a clear ball, a frosted one, a bottle and a window pane. PNG files: the decals' pictures.
 """
 
 from __future__ import annotations
@@ -143,9 +143,11 @@ def files() -> dict[str, bytes]:
     room = [
         ("wall", wall(), (0.0, 0.0, 0.0), plaster),
         ("floor", floor(), (0.0, 0.0, 0.0), slab),
-        *[(f"pedestal{n}", pedestal(), (x, 0.0, z), wood)
-          for n, (x, z) in enumerate(((-1.05, -0.3), (-0.15, 0.1), (0.8, -0.25)))],
-    ]  # fmt: skip
+    ]
+    stands = [
+        (f"pedestal{n}", pedestal(), (x, 0.0, z), wood)
+        for n, (x, z) in enumerate(((-1.05, -0.3), (-0.15, 0.1), (0.8, -0.25)))
+    ]
     glasses = [
         ("clear", ball(), (-1.05, 0.8, -0.3), glass("Clear", thickness=2 * BALL_RADIUS_M)),
         ("frosted", ball(), (-0.15, 0.8, 0.1), glass("Frosted", 0.35, thickness=2 * BALL_RADIUS_M)),
@@ -156,6 +158,7 @@ def files() -> dict[str, bytes]:
     ]  # fmt: skip
     return {
         "room.glb": glb("room", room, []),
+        "pedestals.glb": glb("pedestals", stands, []),
         "glass.glb": glb("glass", glasses, GLASS_EXTENSIONS),
         **{name: make() for name, make in PICTURES.items()},
     }
