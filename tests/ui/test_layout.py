@@ -118,6 +118,31 @@ def test_the_layout_follows_the_window_until_it_is_the_user_s(
     assert read.room == Room(1920.0, read.room.height, 15.0)
 
 
+@pytest.mark.parametrize("size", [(1280, 720), (1600, 900), (640, 360), (300, 40), (1, 1)])
+def test_a_kept_layout_opens_in_any_window(
+    hands: Hands, device: Device, scene_file: Path, size: tuple[int, int]
+) -> None:
+    """Of another window's size, too; and lays the pages out again as large as they were."""
+    robot = hands(scene_file, size=(1280, 720))
+    robot.frames(3)
+    kept = robot.desk.preferences
+    before = robot.find("Scene/search")
+    robot.screen.release()
+    stage = set_stage(str(scene_file), list(QUICK), Viewpoint(), size)
+    screen = robot.screen = HeadlessDesk(
+        device, stage, Words(str(scene_file), list(QUICK)), size, records=True, preferences=kept
+    )
+    robot.desk = screen.desk
+    robot.frames(8)
+    if size == (1280, 720):
+        assert robot.find("Scene/search") == before
+    if size == (1600, 900):
+        assert robot.find("Scene/search")[2] > 1.1 * before[2]
+    robot.screen.size = (1280, 720)
+    robot.frames(12)
+    assert robot.sees("Scene/search")
+
+
 BROKEN = (
     "", "{", "[]", "3", '{"room": [0, 0, 0]}', '{"room": ["a"]}', '{"room": [9, 9, 1]}',
     '{"room": [9, 9, 1], "nodes": {"up": 1}, "pages": {}}',

@@ -20,6 +20,7 @@ LEFT_SHARE, RIGHT_SHARE, BOTTOM_SHARE = 0.15, 0.27, 0.33
 """Sizes of the docks in large windows, as parts of it."""
 COMPACT_SHARE = 0.5
 """Of a compact window's width, for the one column."""
+LEAST_PX = 1.0
 MOST_SHARE = 0.6
 """Of a window, for docks side by side."""
 
@@ -108,10 +109,12 @@ class Docking:
             node = imgui.internal.dock_builder_get_node(number)
             if node is None:
                 return True
-            held = node.size.y if place == "bottom" else node.size.x
-            size = now[place] * held / max(first[place], 1.0)
-            extent = (size, node.size.y) if place != "bottom" else (node.size.x, size)
-            imgui.internal.dock_builder_set_node_size(number, imgui.ImVec2(*extent))
+            laid_out = node.size if node.size.x > 0.0 and node.size.y > 0.0 else node.size_ref
+            width, height = max(laid_out.x, LEAST_PX), max(laid_out.y, LEAST_PX)
+            grown = now[place] / max(first[place], 1.0)
+            size = (width, grown * height) if place == "bottom" else (grown * width, height)
+            extent = imgui.ImVec2(*(max(along, LEAST_PX) for along in size))
+            imgui.internal.dock_builder_set_node_size(number, extent)
         return False
 
     def text(self) -> str:

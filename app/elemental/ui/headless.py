@@ -21,7 +21,7 @@ FRAME_S = 1 / 60
 
 
 class HeadlessDesk:
-    """A desk on a texture of ``size`` pixels instead of a window; always in its first layout."""
+    """A desk on a texture of ``size`` pixels instead of a window; by default in its first layout."""
 
     def __init__(
         self,
@@ -32,11 +32,12 @@ class HeadlessDesk:
         *,
         records: bool = False,
         scale: float = 1.0,
+        preferences: Preferences | None = None,
     ) -> None:
         self.size = size
         self.canvas = device.texture("panel.canvas", size, RGBA8, category="targets")
         self.desk = Desk(
-            device, HeadlessGui(), stage, words, size, Preferences(scale=scale),
+            device, HeadlessGui(), stage, words, size, preferences or Preferences(scale=scale),
             onto=self.canvas, records=records,
         )  # fmt: skip
 

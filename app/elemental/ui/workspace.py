@@ -96,7 +96,7 @@ class Workspace:
 
     def _lay_out(self, dock: int) -> None:
         """Dock the pages at first, and wherever another size asks for another layout."""
-        size = imgui.get_main_viewport().work_size
+        size = imgui.get_main_viewport().size  # the room without the menu bar is known a frame late
         room = Room(max(size.x, 1.0), max(size.y, 1.0), imgui.get_font_size())
         docking = self._docking
         keeps_front = False
