@@ -21,7 +21,7 @@ FRAME_S = 1 / 60
 
 
 class HeadlessDesk:
-    """A desk on a texture of ``size`` pixels instead of a window; by default in its first layout."""
+    """A desk on a texture of ``size`` pixels, not a window; by default in its first layout."""
 
     def __init__(
         self,

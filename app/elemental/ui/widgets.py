@@ -21,7 +21,7 @@ from elemental.ui.theme import Fonts
 
 LOGARITHMIC_SPAN = 100.0
 """A range that is wider than this is slid over by factors, not by differences."""
-LARGEST_SPAN = 1e6
+LARGEST_SPAN = 2e5
 """A range that is wider than this is none to slide over."""
 FARTHEST = 1e9
 """Bound of what can be dragged where there is no other."""
@@ -194,8 +194,9 @@ class Widgets(Lines):
         imgui.set_next_item_width(imgui.calc_item_width() - side - spacing)
         clamp = imgui.SliderFlags_.always_clamp.value
         top = hi if hi is not None else FARTHEST
+        digits = "%.3f" if max(*value, 0.0) < 10.0 else "%.4g"
         changed, dragged = imgui.drag_float3(
-            f"##{name}", list(value), 0.005, 0.0, top, "%.3g", clamp
+            f"##{name}", list(value), 0.005, 0.0, top, digits, clamp
         )
         self.note(name)
         if changed:
