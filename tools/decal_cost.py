@@ -9,10 +9,8 @@ from __future__ import annotations
 
 import statistics
 import sys
-import time
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -24,33 +22,20 @@ from elemental.gpu.device import Device  # noqa: E402
 from elemental.passes.decal_pack import draw_order, runs_of  # noqa: E402
 from elemental.scene.model import Decal  # noqa: E402
 from elemental.session import Viewpoint, set_stage  # noqa: E402
+from pass_clock import PassClock  # noqa: E402
 
 SIZE = (320, 180)
-SETTINGS = ("gi.bounces=1",)
+SETTINGS = ("gi.bounces=1", "gi.diffuse_cones=9")
 COUNTS = (1000,)
 ROUNDS = 9
 SIDE_M = (0.1, 0.35)
 """Least and largest width of a strewn decal."""
-GROUPS = {"set apart": "decal/receivers", "blended": "decal/decal", "voxels": "decal.paint"}
-
-
-class PassClock:
-    """CPU ms of each frame by what names of passes begin with, each pass waited for."""
-
-    def __init__(self, device: Device) -> None:
-        self.ms: dict[str, float] = {}
-        for kind, run in device.executor._run.items():
-
-            def timed(node: Any, run: Any = run) -> None:
-                began = time.process_time()
-                run(node)
-                device.gl.glFinish()
-                taken = 1e3 * (time.process_time() - began)
-                starts = (row for row, start in GROUPS.items() if node.name.startswith(start))
-                row = next(starts, "")
-                self.ms[row] = self.ms.get(row, 0.0) + taken
-
-            device.executor._run[kind] = timed
+DECALS = {
+    "set apart": ("decal/receivers",),
+    "blended": ("decal/decal",),
+    "voxels": ("decal.paint",),
+}
+GROUPS = {**DECALS, "others": ("",)}
 
 
 def strewn(decals: list[Decal], count: int) -> list[Decal]:
@@ -77,14 +62,14 @@ def frame_ms(made: Renderer, clock: PassClock, rebuild: bool) -> dict[str, float
     clock.ms.clear()
     made.render(camera, 0.0, 0)
     made.device.finish()
-    return {**dict.fromkeys(GROUPS, 0.0), **clock.ms, "frame": sum(clock.ms.values())}
+    return {**{row: clock.ms[row] for row in DECALS}, "frame": sum(clock.ms.values())}
 
 
 def main() -> None:
     """Print a line for each count."""
     counts = [int(word) for word in sys.argv[1].split(",")] if len(sys.argv) > 1 else COUNTS
     device = Device.headless()
-    clock = PassClock(device)
+    clock = PassClock(device, GROUPS)
     variants: dict[str, Renderer] = {}
     for count in (0, 8, *counts):
         stage = set_stage("surfaces", SETTINGS, Viewpoint("room"), SIZE)
@@ -105,7 +90,7 @@ def main() -> None:
         ]
         print("voxels built anew:" if rebuild else "a still frame:")
         for name in variants:
-            rows = (*GROUPS, "frame")
+            rows = (*DECALS, "frame")
             cells = [(row, statistics.median(r[name][row] for r in rounds)) for row in rows]
             print(f"  {name}: " + ", ".join(f"{row} {ms:.2f}" for row, ms in cells), flush=True)
     for made in variants.values():

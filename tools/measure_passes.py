@@ -9,8 +9,6 @@ from __future__ import annotations
 
 import argparse
 import sys
-import time
-from collections import defaultdict
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +18,7 @@ sys.path.insert(0, str(ROOT / "app"))
 from elemental.frame import Renderer  # noqa: E402
 from elemental.gpu.device import Device  # noqa: E402
 from elemental.session import Viewpoint, set_stage  # noqa: E402
+from pass_clock import PassClock  # noqa: E402
 
 SCENE = "atrium"
 SIZE = (320, 180)
@@ -44,29 +43,13 @@ GROUPS = {
 CONES = ("diffuse cones", "specular cones")
 
 
-class PassClock:
-    """Adds up the process's time over each pass of a device's frames."""
-
-    def __init__(self, device: Device) -> None:
-        self.ms: dict[str, float] = {}
-        for kind, run in device.executor._run.items():
-
-            def timed(node: Any, run: Any = run) -> None:
-                began = time.process_time()
-                run(node)
-                device.gl.glFinish()
-                row = next(name for name, starts in GROUPS.items() if node.name.startswith(starts))
-                self.ms[row] += 1e3 * (time.process_time() - began)
-
-            device.executor._run[kind] = timed
-
-    def frame(self, renderer: Renderer, camera: Any) -> dict[str, float]:
-        """CPU ms of a frame that rebuilds everything, by row."""
-        self.ms = defaultdict(float)
-        renderer.invalidate("geometry")
-        renderer.render(camera, 0.0, 0)
-        renderer.device.finish()
-        return self.ms
+def frame_ms(clock: PassClock, renderer: Renderer, camera: Any) -> dict[str, float]:
+    """CPU ms of a frame that rebuilds everything, by row."""
+    clock.ms.clear()
+    renderer.invalidate("geometry")
+    renderer.render(camera, 0.0, 0)
+    renderer.device.finish()
+    return {row: clock.ms[row] for row in GROUPS}
 
 
 def main() -> None:
@@ -75,18 +58,18 @@ def main() -> None:
     parser.add_argument("resolutions", nargs="*", type=int, default=[64, 128, 256, 512])
     resolutions = parser.parse_args().resolutions
     device = Device.headless()
-    clock = PassClock(device)
+    clock = PassClock(device, GROUPS)
     staged = {}
     for r in resolutions:
         words = (*SETTINGS, f"gi.resolution={r}")
         stage = set_stage(SCENE, words, Viewpoint(), SIZE)
         staged[r] = Renderer(device, stage.scene, stage.settings, SIZE), stage.camera_at(0.0)
         for _ in range(WARM_UP):
-            clock.frame(*staged[r])
+            frame_ms(clock, *staged[r])
     least = {r: dict.fromkeys(GROUPS, float("inf")) for r in resolutions}
     for _ in range(ROUNDS):
         for r in resolutions:
-            now = clock.frame(*staged[r])
+            now = frame_ms(clock, *staged[r])
             least[r] = {row: min(ms, now[row]) for row, ms in least[r].items()}
     print(f"| {device.info.renderer} | " + " | ".join(f"{r}³" for r in resolutions) + " |")
     print("|---" * (len(resolutions) + 1) + "|")
