@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from dataclasses import fields
 from typing import TypeVar
 
+from elemental.core.collector import collect_rarely
 from elemental.core.errors import InputError
 from elemental.flags import DEFAULT_SIZE, parse
 
@@ -27,6 +28,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             stream.reconfigure(errors="backslashreplace")
     if not sys.warnoptions:
         warnings.simplefilter("ignore")  # libraries' own words, which no user can act on
+    collect_rarely()
     words = list(sys.argv[1:] if arguments is None else arguments)
     commands = {"shot": _shot, "run": _run, "bench": _bench, "render": _render, "list": _list}
     try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from dataclasses import replace
 from typing import Any
 
@@ -213,3 +214,17 @@ def test_a_ball_s_shadow_follows_it(renderers: Any) -> None:
         floor_x = (np.arange(width) + 0.5 - width / 2) * metres
         dark &= floor_x > x + 1.2  # the ball's own dark side is left of there
         assert floor_x[np.nonzero(dark)[1]].mean() == pytest.approx(x + 2.0, abs=0.1)
+
+
+def test_frames_leave_nothing_to_the_cycle_collector(renderers: Any) -> None:
+    """Which therefore may come rarely (core/collector.py)."""
+    renderer = renderers(stage())
+    for number in range(16):
+        if number == 6:
+            gc.collect()
+            gc.disable()
+        renderer.render(EYE, 0.05 * number, number)
+        renderer.device.finish()
+    unreachable = gc.collect()
+    gc.enable()
+    assert unreachable < 50  # ctypes leaves some when it makes a type

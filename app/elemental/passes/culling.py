@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+
 import numpy as np
 
 from elemental.passes.scene_pack import Array, Batch
@@ -33,19 +35,28 @@ class Culling:
         """Some boxes changed."""
         self._revision += 1
 
-    def look(self, viewer: str, clip_from_world: Array) -> tuple[Array, Array] | None:
-        """(commands, order) by this matrix, None if the viewer still sees what it saw last."""
-        key = clip_from_world.tobytes(), self._revision
-        if key == self._looked.get(viewer):
-            return None
-        self._looked[viewer] = key
-        seen = self.visible(clip_from_world)[self._order]
-        if self._seen.get(viewer) == seen.tobytes():
-            return None
-        self._seen[viewer] = seen.tobytes()
-        commands = self._commands.copy()
-        commands["instance_count"] = np.add.reduceat(seen, commands["base_instance"], dtype="<u4")
-        return commands, self._order[np.lexsort((~seen, self._segment))]
+    def look(
+        self, viewers: Sequence[str], clip_from_world: Array
+    ) -> Iterator[tuple[str, Array, Array]]:
+        """(viewer, commands, order) of those viewers that see other instances than before.
+
+        clip_from_world: (V, 4, 4), a matrix for each.
+        """
+        keys = [(matrix.tobytes(), self._revision) for matrix in clip_from_world]
+        fresh = [k for k, name in enumerate(viewers) if self._looked.get(name) != keys[k]]
+        if not fresh:
+            return
+        inside = _inside(clip_from_world[fresh], self._low, self._high) & self._visible
+        for k, seen in zip(fresh, inside[:, self._order], strict=True):
+            viewer = viewers[k]
+            self._looked[viewer] = keys[k]
+            if self._seen.get(viewer) == seen.tobytes():
+                continue
+            self._seen[viewer] = seen.tobytes()
+            commands = self._commands.copy()
+            counts = np.add.reduceat(seen, commands["base_instance"], dtype="<u4")
+            commands["instance_count"] = counts
+            yield viewer, commands, self._order[np.lexsort((~seen, self._segment))]
 
     def instances_of(self, batch: Batch) -> range:
         """Where the batch's instances stand in draw order."""

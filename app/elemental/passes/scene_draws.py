@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from itertools import groupby
 
 import numpy as np
@@ -88,11 +88,10 @@ class SceneDraws:
         self._sorted.release()
         self.lists.release()
 
-    def look(self, viewer: str, clip_from_world: Array) -> None:
-        """Leave out of the draws `seen_by` this viewer what its (4, 4) matrix can't see."""
-        changed = self._culling.look(viewer, clip_from_world)
-        if changed is not None:
-            commands, order = changed
+    def look(self, viewers: Sequence[str], clip_from_world: Array) -> None:
+        """Leave out of the draws `seen_by` these viewers what they can't see by their matrices
+        (V, 4, 4)."""
+        for viewer, commands, order in self._culling.look(viewers, clip_from_world):
             if viewer not in self._seen_by:
                 self._seen_by[viewer] = self._place(viewer)
             self._seen_by[viewer].commands.write(commands)

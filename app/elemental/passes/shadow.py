@@ -228,9 +228,17 @@ def update_shadows(
 ) -> ShadowMaps:
     """Bring every map up to date and return `maps`, ready to be read. size: px of the picture."""
     plan = maps.planner.plan(lights, scene.bounds, camera, size)
-    for number in maps.place(plan, scene):
+    stale = maps.place(plan, scene)
+    matrices = plan.views["clip_from_world"][stale].swapaxes(1, 2)
+    scene.look([_viewer(number) for number in stale], matrices)
+    for number in stale:
         _draw_view(g, maps, scene, plan, number)
     return maps
+
+
+def _viewer(number: int) -> str:
+    """Whom the scene culls for, by the number of a view."""
+    return f"shadow.{number}"
 
 
 def _rectangle(tile: Tile) -> tuple[int, int, int, int]:
@@ -241,9 +249,8 @@ def _rectangle(tile: Tile) -> tuple[int, int, int, int]:
 def _draw_view(g: Graph, maps: ShadowMaps, scene: GpuScene, plan: ShadowPlan, number: int) -> None:
     tile, name = plan.tiles[number], f"shadow.{plan.names[number]}"
     clip_from_world = plan.views[number]["clip_from_world"].T
-    scene.look(f"shadow.{number}", clip_from_world)
     still = maps.still_target(plan, number)
-    draw = partial(_draw_casters, g, scene, clip_from_world, f"shadow.{number}", tile)
+    draw = partial(_draw_casters, g, scene, clip_from_world, _viewer(number), tile)
     if still is None:
         draw(name, maps.target(plan, number), None)
         return
