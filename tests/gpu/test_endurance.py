@@ -62,3 +62,5 @@ def test_a_window_that_is_resized_on_and_on_fills_no_cache(device: Device, tmp_p
     grown = seen[2] - seen[1]
     assert sum(grown.values()) < 300, grown.most_common(5)
     assert seen[2]["TextureDesc"] < 1000
+    for kind in ("SamplerLook", "ImageLook", "TextureKind"):
+        assert grown[kind] == 0, kind  # not of sizes

@@ -4,11 +4,17 @@ from __future__ import annotations
 
 from collections import Counter
 
+import pytest
+
+from elemental.gpu import gl as c
 from elemental.gpu.device import Device
-from elemental.gpu.program import IMAGE, SAMPLER, STORAGE_BLOCK, UNIFORM_BLOCK
-from elemental.gpu.shaders import declared_resources, flatten
+from elemental.gpu.info import OUTPUT_RESOURCES, check_limits
+from elemental.gpu.program import IMAGE, SAMPLER, STORAGE_BLOCK, UNIFORM_BLOCK, resources
+from elemental.gpu.shaders import Raster, declared_resources, flatten
 from lint_shaders import described_programs
 
+MAT4 = 0x8B5C
+"""GL's name of an attribute's type."""
 LEAST = {
     "vertex": {STORAGE_BLOCK: 0, SAMPLER: 16, IMAGE: 0, UNIFORM_BLOCK: 12},
     "geometry": {STORAGE_BLOCK: 0, SAMPLER: 16, IMAGE: 0, UNIFORM_BLOCK: 12},
@@ -38,6 +44,38 @@ def test_no_stage_exceeds_what_every_driver_has(device: Device) -> None:
     assert not over
     counted = [("vertex", SAMPLER), ("fragment", STORAGE_BLOCK), ("compute", IMAGE)]
     assert all(most[place] > 0 for place in counted), most
+
+
+def test_no_program_writes_to_more_than_is_asked_of_a_driver(device: Device) -> None:
+    most = 0
+    for shader in described_programs():
+        program = device.program(shader)
+        written = [s for s in program.slots.values() if s.kind in (STORAGE_BLOCK, IMAGE)]
+        targets = len(resources(device, program.mgl.glo, c.PROGRAM_OUTPUT, (c.PROP_TYPE,)))
+        targets *= isinstance(shader, Raster)
+        most = max(most, sum(slot.count for slot in written if slot.active) + targets)
+    assert most == OUTPUT_RESOURCES
+
+
+def test_a_driver_that_has_less_is_told_so_at_once(
+    device: Device, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(device.gl, "integer", lambda _: 8)
+    with pytest.raises(RuntimeError, match=r"8 storage blocks and images together .*; 10 are"):
+        check_limits(device.gl)
+
+
+def test_uniform_blocks_and_vertices_keep_to_what_every_driver_has(device: Device) -> None:
+    """16 KiB a block, 16 attributes of four numbers [GL 4.3, tables 23.53 and 23.60]."""
+    for shader in described_programs():
+        program = device.program(shader)
+        blocks = [slot.size for slot in program.slots.values() if slot.kind == UNIFORM_BLOCK]
+        assert max(blocks, default=0) <= 16384
+        if isinstance(shader, Raster):
+            wanted = (c.PROP_TYPE, c.PROP_LOCATION)
+            found = resources(device, program.mgl.glo, c.PROGRAM_INPUT, wanted)
+            columns = [4 if kind == MAT4 else 1 for _, (kind, place) in found if place >= 0]
+            assert sum(columns) <= 16, shader
 
 
 def test_textures_are_made_on_a_unit_that_no_stage_reaches(device: Device) -> None:

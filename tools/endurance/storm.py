@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import gc
 import random
 from collections.abc import Iterator
@@ -36,6 +37,8 @@ REBUILDING = frozenset({*SMALL, "gi.area_lights", "shadow.cascades", "shadow.dis
     "gi.diffuse_cones",
     "gi.bounces",
 }
+REST_FRAMES = 20
+"""More than the pool keeps what lies idle, and than the octree takes to settle."""
 VIEW_SHARE = 0.1
 """Share of the frames that show another view than the final picture."""
 
@@ -127,6 +130,19 @@ class Storm:
             self.device.finish()
             yield frame
 
+    def rest(self) -> int:
+        """Come back to the first state, in which two storms can be compared.
+
+        What the storm left goes back to the driver in a few frames. Returns the resident bytes.
+        """
+        self.renderer.scene.volumes = []
+        self.renderer.set_settings(self.stage.settings)
+        self.renderer.resize(LARGEST)
+        for _ in range(REST_FRAMES):
+            self.renderer.render(self.stage.camera, 0.0, 0)
+            self.device.finish()
+        return resident_bytes()
+
     def release(self) -> None:
         """Free the renderer."""
         self.renderer.release()
@@ -142,7 +158,14 @@ class Storm:
 
 
 def resident_bytes() -> int:
-    """Memory of this process that is in RAM, after a collection."""
+    """Memory of this process that is in RAM, after a collection.
+
+    What the C library keeps for later goes back first, where it is glibc: it depends on what was
+    freed last, by tens of MB.
+    """
     gc.collect()
+    trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
+    if trim is not None:
+        trim(0)
     pages = int(Path("/proc/self/statm").read_text().split()[1])
     return pages * 4096

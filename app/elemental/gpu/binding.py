@@ -1,7 +1,7 @@
 """From the GLSL names of a pass to units, views and barrier bits; no GL calls.
 
-What a reference means at a slot (its *look*) depends on the slot and on the texture's description
-alone, so it is worked out once and kept with the slot; a frame only adds the resource.
+What a reference means at a slot (its *look*) depends on the slot and on the texture's kind alone,
+so it is worked out once and kept with the slot; a frame only adds the resource.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from elemental.gpu.refs import (
     TextureHandle,
 )
 from elemental.gpu.resources import Buffer, Texture
-from elemental.gpu.shape import TextureDesc
+from elemental.gpu.shape import TextureKind
 
 Params = Mapping[str, npt.NDArray[np.void]]
 
@@ -81,8 +81,6 @@ class TexelsLook:
 
 TEXEL_BYTES = 16
 Look = SamplerLook | ImageLook | BlockLook | TexelsLook
-MOST_LOOKS = 64
-"""Looks that a slot remembers: several times what the busiest slot of a steady frame has."""
 Bound = tuple[Look, AnyTexture | AnyBuffer]
 _Part = tuple[int, int, int]
 """(level, layer, element of the sampler array); -1: all levels, all layers."""
@@ -158,7 +156,7 @@ def looks(slot: Slot, ref: Ref, program: Program) -> Sequence[Bound]:
     Raises GraphError where it does not fit.
     """
     if isinstance(ref, (Texture, TextureHandle)):
-        known: Look | None = slot.looks.get(ref.desc)
+        known: Look | None = slot.looks.get(ref.desc.kind)
         if known is not None:
             return ((known, ref),)
     if slot.kind in (STORAGE_BLOCK, UNIFORM_BLOCK):
@@ -167,15 +165,8 @@ def looks(slot: Slot, ref: Ref, program: Program) -> Sequence[Bound]:
         return (_texels(slot, ref, program),)
     bound = _elements(slot, ref, program)
     if isinstance(ref, (Texture, TextureHandle)):
-        _remember(slot, ref.desc, bound[0][0])
+        slot.looks[ref.desc.kind] = bound[0][0]
     return bound
-
-
-def _remember(slot: Slot, key: object, look: Look) -> None:
-    """Keep a look for frames to come; a window that is being resized must not fill memory."""
-    if len(slot.looks) >= MOST_LOOKS:
-        slot.looks.clear()
-    slot.looks[key] = look
 
 
 def _elements(slot: Slot, ref: Ref, program: Program) -> list[Bound]:
@@ -235,13 +226,12 @@ def _texture(slot: Slot, ref: object, offset: int, program: Program) -> Bound:
     else:
         raise GraphError(f"{program.shader!r}: {slot.name} needs a texture, not {ref!r}")
     part = (level, layer, offset)
-    key = (texture.desc, part, sampling)
+    key = (texture.desc.kind, part, sampling)
     look: Look | None = slot.looks.get(key)
     if look is None:
         try:
             make = _sampler_look if slot.kind == SAMPLER else _image_look
-            look = make(slot, texture.desc, part, sampling)
-            _remember(slot, key, look)
+            look = slot.looks[key] = make(slot, texture.desc.kind, part, sampling)
         except ValueError as error:
             reason = f"{slot.name}: {texture.name} {error}"
             raise GraphError(f"{program.shader!r}: {reason}") from None
@@ -249,45 +239,45 @@ def _texture(slot: Slot, ref: object, offset: int, program: Program) -> Bound:
 
 
 def _sampler_look(
-    slot: Slot, desc: TextureDesc, part: _Part, sampling: tuple[Any, ...]
+    slot: Slot, kind: TextureKind, part: _Part, sampling: tuple[Any, ...]
 ) -> SamplerLook:
-    level, layer, offset = _checked(desc, part)
+    level, layer, offset = _checked(kind, part)
     filter_, wrap, compare, border, anisotropy, stencil = sampling or (
         None, "clamp", slot.shadow, 0.0, 1.0, False,
     )  # fmt: skip
     if slot.active and slot.shadow != compare:
         raise ValueError("is sampled with compare" if compare else "is sampled without compare")
-    if layer >= 0 and desc.target == c.TEXTURE_3D:
+    if layer >= 0 and kind.target == c.TEXTURE_3D:
         raise ValueError("is 3D: a slice can't be sampled alone")
     if slot.target == c.TEXTURE_BUFFER:
         raise ValueError("is no buffer")
-    target = c.TEXTURE_2D if layer >= 0 else desc.target
+    target = c.TEXTURE_2D if layer >= 0 else kind.target
     if slot.active and target != slot.target:
-        _check_viewable(slot, desc, layer)
+        _check_viewable(slot, kind, layer)
         target = slot.target
-    smooth = desc.format.filterable or compare
+    smooth = kind.format.filterable or compare
     key = (filter_ or ("linear" if smooth else "nearest"), wrap, compare, border, anisotropy)
-    levels = desc.mips if level < 0 else 1
+    levels = kind.mips if level < 0 else 1
     view = (target, max(level, 0), levels, layer, stencil)
-    whole = view == (desc.target, 0, desc.mips, -1, False)
+    whole = view == (kind.target, 0, kind.mips, -1, False)
     return SamplerLook(slot.unit + offset, target, key, None if whole else view)
 
 
-def _image_look(slot: Slot, desc: TextureDesc, part: _Part, _: tuple[Any, ...]) -> ImageLook:
-    level, layer, offset = _checked(desc, part)
+def _image_look(slot: Slot, kind: TextureKind, part: _Part, _: tuple[Any, ...]) -> ImageLook:
+    level, layer, offset = _checked(kind, part)
     view = None
-    if layer < 0 and slot.active and slot.target != desc.target:
-        _check_viewable(slot, desc, layer)
-        view = (slot.target, 0, desc.mips, -1, False)
-    layered = layer < 0 and desc.target != c.TEXTURE_2D
-    fmt = slot.image_format or desc.format.internal
+    if layer < 0 and slot.active and slot.target != kind.target:
+        _check_viewable(slot, kind, layer)
+        view = (slot.target, 0, kind.mips, -1, False)
+    layered = layer < 0 and kind.target != c.TEXTURE_2D
+    fmt = slot.image_format or kind.format.internal
     unit = slot.unit + offset
     return ImageLook(unit, view, max(level, 0), layered, max(layer, 0), slot.access, fmt)
 
 
-def _checked(desc: TextureDesc, part: _Part) -> _Part:
+def _checked(kind: TextureKind, part: _Part) -> _Part:
     level, layer, _ = part
-    if not -1 <= level < desc.mips or not -1 <= layer < desc.slices:
+    if not -1 <= level < kind.mips or not -1 <= layer < kind.slices:
         raise ValueError(f"has no level {level}, layer {layer}")
     return part
 
@@ -299,10 +289,10 @@ _TARGET_NAMES = {
 _FLAT = {c.TEXTURE_2D, c.TEXTURE_2D_ARRAY, c.TEXTURE_CUBE_MAP, c.TEXTURE_CUBE_MAP_ARRAY}
 
 
-def _check_viewable(slot: Slot, desc: TextureDesc, layer: int) -> None:
+def _check_viewable(slot: Slot, kind: TextureKind, layer: int) -> None:
     """glTextureView turns any flat kind into an array, and whole cubes into cubes."""
-    flat = slot.target in _FLAT and desc.target in _FLAT
-    slices = 1 if layer >= 0 else desc.slices
+    flat = slot.target in _FLAT and kind.target in _FLAT
+    slices = 1 if layer >= 0 else kind.slices
     fits = {
         c.TEXTURE_2D: slices == 1,
         c.TEXTURE_2D_ARRAY: True,
@@ -310,5 +300,5 @@ def _check_viewable(slot: Slot, desc: TextureDesc, layer: int) -> None:
         c.TEXTURE_CUBE_MAP_ARRAY: slices % 6 == 0,
     }
     if not flat or not fits[slot.target]:
-        wanted, given = _TARGET_NAMES[slot.target], _TARGET_NAMES[desc.target]
+        wanted, given = _TARGET_NAMES[slot.target], _TARGET_NAMES[kind.target]
         raise ValueError(f"is {given}, the shader wants {wanted}")

@@ -20,7 +20,7 @@ from elemental.gpu.graph import Graph
 from elemental.gpu.graph_report import GraphReport
 from elemental.gpu.headless import adopt, create
 from elemental.gpu.heap import keep_freed_memory
-from elemental.gpu.info import DeviceInfo
+from elemental.gpu.info import DeviceInfo, check_limits
 from elemental.gpu.library import ShaderLibrary
 from elemental.gpu.messages import GlError, Messages
 from elemental.gpu.params import ParamRing
@@ -47,6 +47,7 @@ class Device:
         self.ctx = ctx
         self._loader = loader
         self.gl = c.GL(loader, ctx.version_code)
+        check_limits(self.gl)
         self.debug = debug
         self.log = Messages(self.gl)
         self.memory_budget: int | None = None

@@ -210,7 +210,7 @@ def _reflect(
     slots = {name: _declared_slot(name, decl) for name, decl in declared.items()}
     units = {SAMPLER: 0, IMAGE: 0}
     wanted = (c.PROP_TYPE, c.PROP_ARRAY_SIZE, c.PROP_LOCATION, c.PROP_BLOCK_INDEX)
-    for name, (kind, count, location, block) in _resources(device, glo, c.UNIFORM, wanted):
+    for name, (kind, count, location, block) in resources(device, glo, c.UNIFORM, wanted):
         if block != -1:
             continue
         base = name.removesuffix("[0]")
@@ -226,12 +226,12 @@ def _reflect(
         units[slot.kind] += count
         for element in range(count):
             device.gl.glProgramUniform1i(glo, location + element, slot.unit + element)
-    blocks = _resources(device, glo, c.UNIFORM_BLOCK, (c.PROP_BUFFER_DATA_SIZE,))
+    blocks = resources(device, glo, c.UNIFORM_BLOCK, (c.PROP_BUFFER_DATA_SIZE,))
     for index, (name, (size,)) in enumerate(blocks):
         slot = slots.setdefault(name, Slot(name, UNIFORM_BLOCK))
         slot.unit, slot.size = index, size
         device.gl.glUniformBlockBinding(glo, index, index)
-    storage = _resources(device, glo, c.SHADER_STORAGE_BLOCK, (c.PROP_BUFFER_DATA_SIZE,))
+    storage = resources(device, glo, c.SHADER_STORAGE_BLOCK, (c.PROP_BUFFER_DATA_SIZE,))
     for index, (name, _) in enumerate(storage):
         slot = slots.setdefault(name, Slot(name, STORAGE_BLOCK))
         slot.unit = index
@@ -248,7 +248,7 @@ def _declared_slot(name: str, declared: Declared) -> Slot:
     return slot
 
 
-def _resources(
+def resources(
     device: Device, glo: int, interface: int, properties: Iterable[int]
 ) -> list[tuple[str, tuple[int, ...]]]:
     """(name, property values) of each active resource of a program interface."""
@@ -281,5 +281,5 @@ def buffer_variables(device: Device, program: Program, uniform: bool) -> dict[st
         keys.append("top_level_array_stride")
         properties.append(c.PROP_TOP_LEVEL_ARRAY_STRIDE)
     interface = c.UNIFORM if uniform else c.BUFFER_VARIABLE
-    rows = _resources(device, program.mgl.glo, interface, properties)
+    rows = resources(device, program.mgl.glo, interface, properties)
     return {name: dict(zip(keys, values, strict=True)) for name, values in rows}

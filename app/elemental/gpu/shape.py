@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from functools import cache
 from typing import ClassVar
 from weakref import WeakValueDictionary
 
@@ -12,11 +14,28 @@ from elemental.gpu.formats import Format
 _FACES = 6
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class TextureKind:
+    """What decides how a texture is bound: everything about it but width and height."""
+
+    format: Format
+    mips: int
+    target: int
+    slices: int
+
+
+@cache
+def _kind(format: Format, mips: int, target: int, slices: int) -> TextureKind:
+    """The one kind of these values: a window that is being resized has few."""
+    return TextureKind(format, mips, target, slices)
+
+
 class TextureDesc:
     """What a texture is made of. Equal descriptions are one object and share pooled targets."""
 
     __slots__ = (
-        "__weakref__", "cube", "format", "layers", "mips", "nbytes", "size", "slices", "target",
+        "__weakref__", "cube", "format", "kind", "layers", "mips", "nbytes", "size", "slices",
+        "target",
     )  # fmt: skip
     size: tuple[int, ...]
     """(width, height) or (width, height, depth) texels."""
@@ -29,6 +48,7 @@ class TextureDesc:
     """GL texture target."""
     slices: int
     """Two-dimensional images at level 0: depth, layers or faces."""
+    kind: TextureKind
     nbytes: int
     """Bytes of all levels, without the driver's padding."""
 
@@ -52,6 +72,7 @@ class TextureDesc:
             known.layers, known.cube = layers, cube
             known.target = _target(size, layers, cube)
             known.slices = size[2] if len(size) == 3 else (layers or 1) * (_FACES if cube else 1)
+            known.kind = _kind(format, mips, known.target, known.slices)
             extents = [level_size(size, level) for level in range(mips)]
             texels = sum(math.prod(extent) for extent in extents)
             flat = 1 if len(size) == 3 else known.slices

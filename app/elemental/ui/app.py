@@ -84,7 +84,10 @@ class App:
 
     def __init__(self, window: Window, stage: Stage, words: Run) -> None:
         self.window, self.words = window, words
-        self.device = Device.from_window(window.get_proc_address)
+        try:
+            self.device = Device.from_window(window.get_proc_address)
+        except RuntimeError as error:
+            raise InputError("", "", str(error)) from error
         self.device.watch_shaders()
         self._file: Path = preferences.preferences_file()
         self._kept = preferences.load(self._file)
