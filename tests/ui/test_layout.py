@@ -36,7 +36,7 @@ name = "the room behind the door"
 center = [-12.25, 3.0, 100.125]
 rotation_deg = [12.5, 45.0, 0.0]
 settings.exposure = -1.25
-settings.scene_tint = [0.9, 0.8, 0.7]
+settings.scene_color.tint = [0.9, 0.8, 0.7]
 """
 
 
@@ -198,3 +198,51 @@ def test_one_headless_frame_has_times_messages_and_a_target(
     assert "Buffers/picture" in items
     assert desk.observers.inspector.picture is not None
     screen.release()
+
+
+@pytest.mark.parametrize("scale", [1.0, 2.0])
+def test_what_opens_over_the_picture_fits_the_window(
+    hands: Hands, scene_file: Path, scale: float
+) -> None:
+    robot = hands(scene_file, size=(960, 540), scale=scale)
+    desk = robot.desk
+    broken = "content/materials/rust.glsl:12: 'nothing': undeclared identifier, and so on, and on"
+    robot.desk.renderer.problems = lambda: [broken * 2]
+
+    def extent(name: str) -> tuple[float, float, float, float]:
+        window = imgui.internal.find_window_by_name(name)
+        assert window is not None
+        return (window.pos.x, window.pos.y,
+                window.pos.x + window.size.x, window.pos.y + window.size.y)  # fmt: skip
+
+    for action, name in (("help", "keys"), ("hud", "hud")):
+        desk.act(action)
+        robot.frames(4)
+        left, top, right, bottom = extent(name)
+        assert left >= 0
+        assert top >= 0
+        assert right <= 960
+        assert bottom <= 540 or name == "hud"
+        desk.act(action)
+    desk.act("save.as")
+    robot.frames(4)
+    for button in ("dialog/Save", "dialog/Cancel", "dialog/name"):
+        assert robot.find(button)[3] < 540
+    robot.click("dialog/Cancel")
+    desk.say("a message of many words, longer than the picture is wide, " * 3, "error")
+    robot.frames(4)
+    left, _, right, _ = extent("message")
+    assert left >= desk.place[0]
+    assert right <= desk.place[2]
+
+
+def test_an_override_goes_back_to_the_scene_s_value(hands: Hands, scene_file: Path) -> None:
+    scene_file.write_text(scene_file.read_text() + MORE)
+    robot = hands(scene_file, page="Volumes", size=(1200, 1000))
+    robot.click("search")
+    robot.type("exposure", enter=False)
+    assert robot.desk.document.state.volumes[0].overrides["exposure"] == -1.25
+    robot.click("reset exposure")
+    assert robot.desk.document.state.volumes[0].overrides["exposure"] == 0.25  # the scene's
+    robot.frames(2)
+    assert not robot.sees("reset exposure")

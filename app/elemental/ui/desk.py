@@ -107,6 +107,7 @@ class Desk:
         self._began: float | None = None
         """When the last frame was begun."""
         self._message, self._message_until = "", 0.0
+        self.message_kind: Kind = "note"
         self._sure_until = 0.0
         gui.scale = preferences.scale
         self.workspace = Workspace(Widgets(gui.fonts, records), pages_of(self), preferences.layout)
@@ -297,6 +298,7 @@ class Desk:
     def say(self, message: str, kind: Kind = "note") -> None:
         """Show a line for a while, and log it."""
         self._message, self._message_until = message, time.perf_counter() + MESSAGE_S
+        self.message_kind = kind
         self.log.add(kind, message, self._now())
 
     def _now(self) -> float:

@@ -15,6 +15,15 @@ from elemental.ui.words import Rect
 
 MARGIN_PX = 10.0
 BACKGROUND_OPACITY = 0.85
+BLOCK_EM = 29.0
+"""Width of the bindings in one block, in heights of the text."""
+LEAST_PROBLEM_EM = 20.0
+"""Width of what went wrong, at least, in heights of the text."""
+LINES_AROUND = 12
+"""Of the HUD, beside passes, counters and bytes."""
+LEAST_PASSES = 4
+MESSAGE_EM = 40.0
+"""Width of a message at most, in heights of the text."""
 
 _PANEL = (
     imgui.WindowFlags_.no_decoration.value
@@ -67,14 +76,18 @@ def draw_hud(figures: Figures, place: Rect, fonts: Fonts) -> None:
     imgui.text_unformatted(f"{rate}CPU {figures.cpu_ms:.2f} ms")
     paused = "  paused" if figures.paused else ""
     _colored(theme.MUTED, f"time {figures.time_s:.2f} s{paused}  speed {figures.speed:.3g} m/s")
+    width = max(place[2] - place[0] - 4.0 * MARGIN_PX, LEAST_PROBLEM_EM * imgui.get_font_size())
+    imgui.push_text_wrap_pos(width)
     for problem in figures.problems:
         _colored(theme.RED, problem)
+    imgui.pop_text_wrap_pos()
     for name, count in figures.counters.items():
         if "dropped" in name and count:
             _colored(theme.RED, f"{name.replace('_', ' ').upper()}: {count:,}")
-    rows = [(name, f"{ms:.3f} ms") for name, ms in figures.passes.items()]
-    rows.append(("all passes", f"{sum(figures.passes.values()):.3f} ms"))
-    _figures("passes", rows)
+    others = len(figures.counters) + len(figures.bytes) + LINES_AROUND
+    line = imgui.get_text_line_height() + 2.0 * imgui.get_style().cell_padding.y
+    fitting = max(int((place[3] - place[1]) / line) - others, LEAST_PASSES)
+    _figures("passes", _longest(figures.passes, fitting))
     _figures("counters", [(n.replace("_", " "), f"{c:,}") for n, c in figures.counters.items()])
     _figures("bytes", [(n, f"{b / 2**20:.1f} MiB") for n, b in figures.bytes.items()])
     _colored(theme.MUTED, "F1 keys, F5 panel, F6 hides this")
@@ -82,12 +95,43 @@ def draw_hud(figures: Figures, place: Rect, fonts: Fonts) -> None:
     imgui.end()
 
 
+def _longest(passes: Mapping[str, float], count: int) -> list[tuple[str, str]]:
+    """Rows of the longest passes, in the order of the frame; the rest of them in one."""
+    kept = sorted(passes, key=lambda name: -passes[name])[:count]
+    rows = [(name, f"{ms:.3f} ms") for name, ms in passes.items() if name in kept]
+    rest = [ms for name, ms in passes.items() if name not in kept]
+    if rest:
+        rows.append((f"{len(rest)} more", f"{sum(rest):.3f} ms"))
+    return [*rows, ("all passes", f"{sum(passes.values()):.3f} ms")]
+
+
 def draw_keys() -> None:
-    """All bindings, in the middle of the window: they may need more room than the picture has."""
-    center = imgui.get_main_viewport().get_center()
-    _begin("keys", (center.x, center.y), (0.5, 0.5), 0.97)
+    """All bindings, in the middle of the window: they may need more room than the picture has.
+
+    On a low window they stand in two blocks; where these are too wide, the wheel scrolls.
+    """
+    viewport = imgui.get_main_viewport()
+    center, room, em = viewport.get_center(), viewport.size, imgui.get_font_size()
+    rows = [(binding.keys_text(), binding.help) for binding in BINDINGS]
+    line = imgui.get_text_line_height() + 2.0 * imgui.get_style().cell_padding.y
+    low = (len(rows) + 3) * line > room.y - 2.0 * MARGIN_PX
+    blocks = 2 if low and room.x > 2.0 * BLOCK_EM * em else 1
+    largest = imgui.ImVec2(room.x - 2.0 * MARGIN_PX, room.y - 2.0 * MARGIN_PX)
+    imgui.set_next_window_size_constraints(imgui.ImVec2(0.0, 0.0), largest)
+    imgui.set_next_window_focus()
+    scrolls = imgui.WindowFlags_.no_inputs.value | imgui.WindowFlags_.no_scrollbar.value
+    _begin("keys", (center.x, center.y), (0.5, 0.5), 0.97, _PANEL & ~scrolls)
     _colored(theme.ACCENT, "Keys")
-    _two_columns("bindings", [(binding.keys_text(), binding.help) for binding in BINDINGS])
+    imgui.separator()
+    height = -(-len(rows) // blocks)
+    if imgui.begin_table("bindings", 2 * blocks, _TABLE):
+        for number in range(height):
+            for row in rows[number::height]:
+                for text in row:
+                    imgui.table_next_column()
+                    imgui.text_unformatted(text)
+            imgui.table_next_row()
+        imgui.end_table()
     imgui.end()
 
 
@@ -111,10 +155,15 @@ def draw_pixel(values: Mapping[str, Probed], place: Rect, fonts: Fonts) -> None:
     imgui.end()
 
 
-def draw_message(text: str, place: Rect) -> None:
-    """One line at the bottom of the picture's place."""
+def draw_message(text: str, place: Rect, rgb: theme.Rgb) -> None:
+    """Some words at the bottom of the picture's place, wrapped within it."""
     _begin("message", ((place[0] + place[2]) / 2, place[3] - MARGIN_PX), (0.5, 1.0))
-    imgui.text_unformatted(text)
+    padding = imgui.get_style().window_padding.x
+    room = place[2] - place[0] - 2.0 * (MARGIN_PX + padding)
+    width = min(max(room, 1.0), MESSAGE_EM * imgui.get_font_size())
+    imgui.push_text_wrap_pos(imgui.get_cursor_pos_x() + width)
+    _colored(rgb, text)
+    imgui.pop_text_wrap_pos()
     imgui.end()
 
 
@@ -123,11 +172,12 @@ def _begin(
     place: tuple[float, float],
     pivot: tuple[float, float],
     opacity: float = BACKGROUND_OPACITY,
+    flags: int = _PANEL,
 ) -> None:
     always = imgui.Cond_.always.value
     imgui.set_next_window_pos(imgui.ImVec2(*place), always, imgui.ImVec2(*pivot))
     imgui.set_next_window_bg_alpha(opacity)
-    imgui.begin(name, None, _PANEL)
+    imgui.begin(name, None, flags)
 
 
 def _colored(rgb: theme.Rgb, text: str) -> None:

@@ -18,7 +18,7 @@ from elemental.ui.panel.buffers import BufferView, buffers_page
 from elemental.ui.panel.exposure import exposure_page
 from elemental.ui.panel.graph import GraphView, graph_page
 from elemental.ui.panel.lights import lights_page
-from elemental.ui.panel.log import LogFilter, log_page
+from elemental.ui.panel.log import COLORS, LogFilter, log_page
 from elemental.ui.panel.materials import materials_page
 from elemental.ui.panel.menu import MenuState, menu_bar
 from elemental.ui.panel.scene import Selection, scene_page
@@ -167,7 +167,7 @@ def overlays(desk: Desk, place: Rect) -> None:
     if desk.shows_help:
         draw_keys()
     if desk.message:
-        draw_message(desk.message, place)
+        draw_message(desk.message, place, COLORS[desk.message_kind])
 
 
 def _volumes_in_view(desk: Desk, place: Rect) -> None:

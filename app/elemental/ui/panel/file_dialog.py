@@ -12,6 +12,11 @@ from elemental.ui import icons, theme
 from elemental.ui.widgets import Widgets
 
 ROWS = 12
+LINES_AROUND = 7.5
+"""Of the dialog, besides its list."""
+WIDTH_EM = 34.0
+WINDOW_SHARE = 0.95
+"""Of the window, for the dialog at most."""
 MOST_FILES = 1000
 """Shown of a folder; more are found by typing."""
 
@@ -40,7 +45,8 @@ class FileDialog:
             imgui.open_popup(self.title)
         center = imgui.get_main_viewport().get_center()
         imgui.set_next_window_pos(center, imgui.Cond_.appearing.value, imgui.ImVec2(0.5, 0.5))
-        width = 34.0 * imgui.get_font_size()
+        room = imgui.get_main_viewport().size
+        width = min(WIDTH_EM * imgui.get_font_size(), WINDOW_SHARE * room.x)
         imgui.set_next_window_size(imgui.ImVec2(width, 0.0), imgui.Cond_.appearing.value)
         flags = imgui.WindowFlags_.no_saved_settings.value | imgui.WindowFlags_.no_docking.value
         shows, stays = imgui.begin_popup_modal(self.title, True, flags)
@@ -62,9 +68,10 @@ class FileDialog:
         imgui.same_line()
         over = w.button("Cancel") or not stays
         if self._overwrites and exists:
-            imgui.same_line()
+            told = "exists: press again to replace it"
+            w.flow(imgui.calc_text_size(told).x)
             imgui.align_text_to_frame_padding()
-            w.text("exists: press again to replace it", theme.ACCENT)
+            w.paragraph(told, theme.ACCENT)
         if pressed and self.saves and exists and not self._overwrites:
             self._overwrites = True
         elif pressed:
@@ -87,9 +94,11 @@ class FileDialog:
             self.folder = self.folder.parent
         imgui.same_line()
         imgui.align_text_to_frame_padding()
-        w.text(str(self.folder), theme.MUTED)
+        w.paragraph(str(self.folder), theme.MUTED)
         folders, files = self._contents()
-        height = ROWS * imgui.get_text_line_height_with_spacing()
+        line = imgui.get_text_line_height_with_spacing()
+        room = WINDOW_SHARE * imgui.get_main_viewport().size.y - LINES_AROUND * line
+        height = max(min(ROWS * line, room), 2.0 * line)
         if imgui.begin_child("files", imgui.ImVec2(0.0, height), imgui.ChildFlags_.borders.value):
             for name in folders:
                 if imgui.selectable(f"{icons.FOLDER}  {name}", False)[0]:

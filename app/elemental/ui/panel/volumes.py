@@ -24,7 +24,7 @@ FIELDS = (
     Setting("shape", "choice", "box", "of the region in which it acts in full",
             choices=("box", "sphere")),
     Setting("priority", "float", 0.0, "volumes of a higher one come on top", lo=0, hi=100),
-    Setting("blend_radius", "float", 1.0, "over which it fades outside", unit="m", lo=0, hi=100),
+    Setting("blend_radius", "float", 1.0, "over which it fades outside", unit="m", lo=0, hi=1000),
     Setting("blend_weight", "float", 1.0, "share of its values, inside", lo=0, hi=1),
 )  # fmt: skip
 """Fields of a Volume, as rows."""
@@ -182,6 +182,9 @@ def _override_row(w: Widgets, settings: Settings, volume: Volume, setting: Setti
     imgui.begin_disabled(not on)
     edit = w.value(key, setting, value)
     imgui.end_disabled()
+    scene_text = setting.value_text(settings[key]) or "nothing"
+    if w.reset(key, on and value != settings[key], f"the scene's {scene_text}"):
+        edit = Edit(settings[key])
     imgui.pop_id()
     if ticked != on:
         rest = {k: v for k, v in volume.overrides.items() if k != key}
