@@ -76,8 +76,8 @@ def draw_hud(figures: Figures, place: Rect, fonts: Fonts) -> None:
     imgui.text_unformatted(f"{rate}CPU {figures.cpu_ms:.2f} ms")
     paused = "  paused" if figures.paused else ""
     _colored(theme.MUTED, f"time {figures.time_s:.2f} s{paused}  speed {figures.speed:.3g} m/s")
-    width = max(place[2] - place[0] - 4.0 * MARGIN_PX, LEAST_PROBLEM_EM * imgui.get_font_size())
-    imgui.push_text_wrap_pos(width)
+    room = max(place[2] - place[0] - 4.0 * MARGIN_PX, LEAST_PROBLEM_EM * imgui.get_font_size())
+    imgui.push_text_wrap_pos(room)
     for problem in figures.problems:
         _colored(theme.RED, problem)
     imgui.pop_text_wrap_pos()
