@@ -276,6 +276,11 @@ def test_a_high_severity_message_fails_the_frame(device: Device) -> None:
     device.log.messages.clear()
 
 
+def test_no_target_is_dithered(device: Device) -> None:
+    """GL begins with it on: codes of normals and lighting models are no colours."""
+    assert device.gl.integer(c.DITHER) == 0
+
+
 def test_frames_do_not_pile_up(device: Device, sources: Sources) -> None:
     """The CPU runs at most three frames ahead, so a software driver's queue stays bounded."""
     values = device.buffer("values", 256)

@@ -78,6 +78,7 @@ class Device:
         self.readbacks = ReadbackQueue(self)
         self.timers = PassTimers(self.gl)
         self.gl.glEnable(c.TEXTURE_CUBE_MAP_SEAMLESS)
+        self.gl.glDisable(c.DITHER)  # on at first: drivers may shift the codes of the G-buffer
 
     @classmethod
     def headless(cls, debug: bool = False) -> Device:
