@@ -1,7 +1,8 @@
 // Filtered shadow lookups. Two doors:
 //   light_visibility          any point of the scene, independent of the camera
 //   light_visibility_in_view  a point the camera sees: directional lights take the finest cascade,
-//                             with SOFT_SHADOWS lights that have a size cast penumbras
+//                             with SOFT_SHADOWS lights that have a size cast penumbras, and with
+//                             CONTACT_SHADOWS no light falls through where surfaces meet
 #include "shared/light.glsl"
 #include "shared/shadow.glsl"
 
@@ -38,6 +39,13 @@ float shadow_tent_3x3(uint view, vec2 uv, float depth) {
     return lit / 16.0;
 }
 
+#ifndef CONTACT_SHADOWS
+#define CONTACT_SHADOWS 0
+#endif
+#if CONTACT_SHADOWS
+#include "lib/contact_shadow.glsl"
+#endif
+
 bool inside_view(uint view, vec3 p_ws) {
     vec2 p = (shadow_views[view].clip_from_world * vec4(p_ws, 1.0)).xy;
     float edge = 1.0 - 2.0 * SHADOW_CASCADE_MARGIN / float(textureSize(u_shadow_maps, 0).x);
@@ -50,6 +58,9 @@ bool inside_view(uint view, vec3 p_ws) {
 float view_visibility(uint view, vec3 p_ws, vec3 n_ws, vec3 to_light, float offset_m) {
     mat4 clip_from_world = shadow_views[view].clip_from_world;
     vec4 p = clip_from_world * vec4(p_ws, 1.0);
+#if CONTACT_SHADOWS
+    vec2 own_uv = p.xy / p.w * 0.5 + 0.5;
+#endif
     float cosine = dot(n_ws, to_light);
     float sine = sqrt(clamp(1.0 - cosine * cosine, 0.0, 1.0));
     float radius_m = SHADOW_KERNEL_RADIUS * shadow_views[view].texel * abs(p.w);
@@ -58,7 +69,15 @@ float view_visibility(uint view, vec3 p_ws, vec3 n_ws, vec3 to_light, float offs
     if (p.w <= 0.0) return 1.0;
     vec3 coordinate = p.xyz / p.w * 0.5 + 0.5;
     if (any(greaterThan(abs(coordinate.xy - 0.5), vec2(0.5))) || coordinate.z >= 1.0) return 1.0;
-    return shadow_tent_3x3(view, coordinate.xy, coordinate.z - shadow_views[view].depth_bias);
+    float depth = coordinate.z - shadow_views[view].depth_bias;
+    float lit = shadow_tent_3x3(view, coordinate.xy, depth);
+#if CONTACT_SHADOWS
+    if (lit > 0.0 && lit < 1.0) {
+        float touching = contact_visibility(view, coordinate.xy, coordinate.xy - own_uv, depth, abs(p.w));
+        if (touching != NO_CONTACT) return touching;
+    }
+#endif
+    return lit;
 }
 
 uint cube_face(vec3 direction) {

@@ -6,8 +6,10 @@
 // sees it, so that a point light's faces have no seams. The discs are not turned from pixel to pixel:
 // a sunflower's points lie apart along every direction, so that edges neither band nor grain.
 
+#if !CONTACT_SHADOWS
 // Depths themselves, in the maps that u_shadow_maps compares.
 uniform sampler2DArray u_shadow_depths;
+#endif
 
 const int BLOCKER_SAMPLES = 24;
 const int PENUMBRA_SAMPLES = 40;

@@ -144,6 +144,44 @@ def test_a_box_s_shadow_starts_at_its_foot(rig: MakeRig, in_view: bool) -> None:
     assert got.max() == 0.0
 
 
+@pytest.mark.parametrize("contact", [False, True])
+def test_no_light_falls_through_the_joint_of_two_sheets(rig: MakeRig, contact: bool) -> None:
+    """Behind a sheet that stands on a floor all is dark, before it all is lit, up to the joint.
+
+    Filtering alone leaves a line of either within its radius.
+    """
+    upright = np.array([[0, -1, 0, 0], [1, 0, 0, 0.5], [0, 0, 1, 0], [0, 0, 0, 1]], np.float32)
+    world = scene(
+        (mesh(quad(4.0)), IDENTITY),
+        (mesh(quad(1.0)), upright),
+        materials=[material(double_sided=True)],
+        lights=[sun(SLANTED)],
+    )
+    view = rig(world, HIGH, shadow_settings=ShadowSettings(1024))
+    texel = 4.5 / 1024
+    away, along = np.meshgrid(np.linspace(0.05, 3.0, 60) * texel, np.linspace(-0.3, 0.3, 41))
+    behind = np.stack([away.ravel(), 0 * away.ravel(), along.ravel()], axis=-1)
+    before = behind * vector(-1, 1, 1) - vector(0.3 * texel, 0, 0)
+    view.begin()[0].execute()
+
+    def seen(points: Array) -> Array:
+        return run_glsl(
+            view.device,
+            ["lib/shadow.glsl"],
+            "light_visibility_in_view(0u, p, n)",
+            {"p": points, "n": np.broadcast_to(vector(0, 1, 0), points.shape)},
+            reads=view.shadows.depth_reads(contact),
+            defines={"CONTACT_SHADOWS": int(contact)},
+        )
+
+    if contact:
+        assert seen(behind).max() == 0.0
+        assert seen(before).min() >= 0.9
+    else:
+        assert seen(behind).max() > 0.2
+        assert seen(before).min() < 0.8
+
+
 def test_masked_holes_let_light_through(rig: MakeRig) -> None:
     pixels = np.full((2, 2, 4), 255, np.uint8)
     pixels[0, 0, 3] = 0

@@ -28,6 +28,7 @@ VARIANTS = {
             "LIGHT_CELLS": cells,
             "LIGHTING_MODELS": models,
             "SOFT_SHADOWS": soft,
+            "CONTACT_SHADOWS": 1,
         },
     )
     for sky in (0, 1)
@@ -57,7 +58,7 @@ def shade(
     there is no indirect light. cells: of `cull_to_view`. models: the lighting models that
     there may be beyond the default one. sky: drawn behind the scene, black without it.
     """
-    reads: dict[str, Ref] = {**gb.reads(), **shadows.view_reads(), **cells.reads()}
+    reads: dict[str, Ref] = {**gb.reads(), **shadows.view_reads(contact=True), **cells.reads()}
     params = {"View": view, **shadows.params(), **cells.params()}
     if sky is not None:
         reads |= sky.reads()

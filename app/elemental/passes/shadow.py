@@ -78,11 +78,18 @@ class ShadowMaps:
         """What a shader reads that includes lib/lights.glsl, too."""
         return {**self.reads(), **self._profiles.reads()}
 
-    def view_reads(self) -> dict[str, Ref]:
-        """What a shader reads that shades what the camera sees, its SOFT_SHADOWS as `soft` is."""
+    def depth_reads(self, contact: bool = False) -> dict[str, Ref]:
+        """What a shader reads that asks lib/shadow.glsl of what the camera sees.
+
+        Its SOFT_SHADOWS as `soft` is; ``contact``: its CONTACT_SHADOWS.
+        """
         assert self._maps is not None, "update_shadows comes first"
-        depths = {"u_shadow_depths": Sampled(self._maps)} if self.soft else {}
-        return {**self.light_reads(), **depths}
+        depths = {"u_shadow_depths": Sampled(self._maps)} if self.soft or contact else {}
+        return {**self.reads(), **depths}
+
+    def view_reads(self, contact: bool = False) -> dict[str, Ref]:
+        """What a shader reads, too, that shades it by lib/lights.glsl."""
+        return {**self.depth_reads(contact), **self._profiles.reads()}
 
     def params(self) -> dict[str, Block]:
         """The uniform blocks of lib/shadow.glsl: none."""

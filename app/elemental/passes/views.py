@@ -38,7 +38,12 @@ SURFACE = {
 LIGHTS = {
     (name, cells, soft): Compute(
         "views/lights.comp.glsl",
-        {"SHOW_RADIANCE": int(name == "direct"), "LIGHT_CELLS": cells, "SOFT_SHADOWS": soft},
+        {
+            "SHOW_RADIANCE": int(name == "direct"),
+            "LIGHT_CELLS": cells,
+            "SOFT_SHADOWS": soft,
+            "CONTACT_SHADOWS": 1,
+        },
     )
     for name in LIGHT_VIEWS
     for cells in (ALL_LIGHTS, VIEW_CELLS)
@@ -73,7 +78,7 @@ def light_view(
     g.compute(
         LIGHTS[name, cells.kind, int(shadows.soft)],
         f"view.{name}",
-        reads={**gb.reads(), **shadows.view_reads(), **cells.reads()},
+        reads={**gb.reads(), **shadows.view_reads(contact=True), **cells.reads()},
         writes={"o_image": image},
         params={"View": view, **shadows.params(), **cells.params()},
         threads=image.size,
