@@ -164,7 +164,6 @@ near = 0.05
 
 [settings]
 "gi.bounces" = 2
-"gi.diffuse_cones" = 36
 """
 
 

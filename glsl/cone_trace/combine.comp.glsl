@@ -16,6 +16,7 @@
 #include "lib/interleave.glsl"
 #include "lib/packing.glsl"
 #include "lib/view.glsl"
+#include "lib/similar_surface.glsl"
 #include "shared/gbuffer.glsl"
 #if AREA_LIGHTS
 #include "lib/area_light.glsl"
@@ -34,13 +35,6 @@ uniform sampler2D u_gbuffer_d;
 layout(rgba16f) writeonly uniform image2D o_broad_gi;
 #endif
 layout(rgba16f) writeonly uniform image2D o_diffuse_gi;
-
-// A neighbour counts while its distance from the pixel's tangent plane is below this share of its
-// distance from the eye.
-const float PLANE_TOLERANCE = 0.01;
-
-// What any neighbour counts at least: a pixel without similar ones is filled, not black.
-const float LEAST_SIMILARITY = 1e-4;
 
 // A work group's pixels and the two around them on each side, read once.
 const int REACH = 2;
@@ -70,15 +64,6 @@ void load_tile(ivec2 size) {
     }
 }
 
-// 1 on the same plane with the same normal; the cosine between normals counts to the eighth power.
-float surface_similarity(int neighbour, vec3 p_ws, vec3 normal, float inverse_tolerance) {
-    float off_plane = abs(dot(tile_position[neighbour].xyz - p_ws, normal)) * inverse_tolerance;
-    float cosine = max(dot(normal, tile_normal[neighbour]), 0.0);
-    cosine *= cosine;
-    cosine *= cosine;
-    return max(1.0 - off_plane, 0.0) * cosine * cosine;
-}
-
 void main() {
     ivec2 size = ivec2(u_view.viewport_px.xy);
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -96,7 +81,7 @@ void main() {
     }
     vec3 normal = tile_normal[own];
     vec3 p_ws = tile_position[own].xyz;
-    float inverse_tolerance = 1.0 / (PLANE_TOLERANCE * distance(p_ws, u_view.eye_ws));
+    float inverse_tolerance = inverse_plane_tolerance(p_ws);
 
 #if AREA_LIGHTS
     vec4 from_area = vec4(0.0);
@@ -112,7 +97,8 @@ void main() {
             for (int x = first.x; x <= REACH; x += 3) {
                 int neighbour = own + y * TILE + x;
                 if (tile_position[neighbour].w == 0.0) continue;
-                float similarity = surface_similarity(neighbour, p_ws, normal, inverse_tolerance);
+                float similarity = plane_similarity(tile_position[neighbour].xyz, p_ws, normal, inverse_tolerance)
+                                   * normal_similarity(tile_normal[neighbour], normal);
                 float tent = float((3 - abs(x)) * (3 - abs(y)));
                 float weight = tent * max(similarity, LEAST_SIMILARITY);
 #if AREA_LIGHTS

@@ -1,6 +1,13 @@
 // Nine sub-images, one direction each, so that neighbouring threads walk the same way.
 // [Mittring12 "Diffuse Sampling 2/2"], [Segovia06]: non-interleaved processing of an interleaved
 // 3x3 pattern; loop over 9 directions, then XY; reject samples behind the surface normal.
+//
+// SHARED: each pixel traces one of its group's CONE_SPLIT cones, four of them, and
+// cone_trace/share.comp.glsl makes the group's mean.
+
+#ifndef SHARED
+#define SHARED 0
+#endif
 
 #include "lib/diffuse_cone.glsl"
 #include "lib/packing.glsl"
@@ -16,7 +23,12 @@ layout(rgba16f) writeonly uniform image2D o_radiance;
 
 void main() {
     ivec2 size = ivec2(u_view.viewport_px.xy);
+#if SHARED
+    int part;
+    InterleavedPixel own = interleaved_part(gl_GlobalInvocationID, size, part);
+#else
     InterleavedPixel own = interleaved_pixel(gl_GlobalInvocationID, size);
+#endif
     if (!own.inside) return;
 
     vec4 result = vec4(0.0, 0.0, 0.0, REJECTED);
@@ -24,7 +36,11 @@ void main() {
     if (depth < DEPTH_CLEAR) {
         vec3 normal = normal10_decode(texelFetch(u_gbuffer_a, own.pixel, 0).xyz);
         vec3 p_ws = position_ws_at((vec2(own.pixel) + 0.5) * u_view.viewport_px.zw, depth);
+#if SHARED
+        result = diffuse_cone_part(p_ws, normal, own.cone, part);
+#else
         result = diffuse_cone(p_ws, normal, own.cone);
+#endif
     }
     imageStore(o_radiance, own.texel, result);
 }

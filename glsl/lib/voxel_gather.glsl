@@ -29,18 +29,34 @@ vec3 area_light_radiance(vec3 p_ws, vec3 normal, float spacing) {
     return sum * INVERSE_PI;
 }
 
-// Cosine-weighted mean of the radiance around the normal.
-vec3 gathered_radiance(vec3 p_ws, vec3 normal, float spacing) {
+// 1: a voxel traces one cone of each group, and the eight of a brick all of them: neighbours along any
+// two axes take different ones, and what filters them takes the mean.
+#ifndef SHARED
+#define SHARED 0
+#endif
+
+int part_of_voxel(uint octant) { return int((octant & 3u) ^ (octant >> 2) * 3u); }
+
+// Cosine-weighted mean of the radiance around the normal. octant: the voxel's place in its brick.
+vec3 gathered_radiance(vec3 p_ws, vec3 normal, float spacing, uint octant) {
+    vec3 from = p_ws + normal * (0.5 * spacing);
     vec3 sum = vec3(0.0);
     float weights = 0.0;
     for (int i = 0; i < CONE_COUNT; ++i) {
+#if SHARED
+        vec3 direction = CONE_DIRECTIONS[i * CONE_SPLIT + part_of_voxel(octant)];
+        float weight = cone_weight(normal, direction);
+        if (weight <= 0.0) continue;
+        sum += weight * narrow_cone(from, normal, direction).rgb;
+#else
         float weight = cone_group_weight(normal, i);
         if (weight <= 0.0) continue;
-        sum += weight * diffuse_cone(p_ws + normal * (0.5 * spacing), normal, i).rgb;
+        sum += weight * diffuse_cone(from, normal, i).rgb;
+#endif
         weights += weight;
     }
     return sum / max(weights, 1e-6) + area_light_radiance(p_ws, normal, spacing);
 }
 #else
-vec3 gathered_radiance(vec3 p_ws, vec3 normal, float spacing) { return vec3(0.0); }
+vec3 gathered_radiance(vec3 p_ws, vec3 normal, float spacing, uint octant) { return vec3(0.0); }
 #endif

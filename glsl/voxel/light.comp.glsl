@@ -71,6 +71,6 @@ void main() {
     // Bricks that got other slots hold nothing yet to gather.
     if (octree_state.fresh == 0u)
 #endif
-    incident += gathered_radiance(p_ws, normal, spacing);
+    incident += gathered_radiance(p_ws, normal, spacing, octant);
     radiance[index] = rgb9e5_pack(albedo.rgb * incident + rgb9e5_unpack(voxel.emissive));
 }

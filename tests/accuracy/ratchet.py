@@ -32,6 +32,7 @@ SETTINGS = (
     "gi.resolution=64",
     f"gi.bounces={GATHERS}",
     "gi.diffuse_cones=36",
+    "gi.diffuse_pattern=6",
     "gi.area_lights=true",
     "gi.specular=true",
     "gi.specular_adaptive=true",

@@ -12,7 +12,7 @@ from elemental.gpu.refs import TextureHandle
 from elemental.passes.area_lights import AreaLightBlock
 from elemental.passes.camera_view import pack_view
 from elemental.passes.cone_trace.area_lights import trace_area_lights
-from elemental.passes.cone_trace.diffuse import combine_diffuse, trace_diffuse
+from elemental.passes.cone_trace.diffuse import SHARED_SPLIT, combine_diffuse, trace_diffuse
 from elemental.passes.cone_trace.interleave import SUB_IMAGES
 from elemental.passes.cone_trace.specular import Specular, SpecularCounters, trace_specular
 from elemental.passes.cone_trace.steps import STEP_VIEWS, step_view
@@ -197,7 +197,8 @@ def _gather(
     s, name = request.settings, request.view
     split = _cone_split(s)
     block = systems.area_lights.block
-    radiance = trace_diffuse(g, view, gb, octree, sky, split)
+    shared = split == SHARED_SPLIT and s["gi.diffuse_pattern"] == 6
+    radiance = trace_diffuse(g, view, gb, octree, sky, split, shared)
     area = None
     if systems.area_lights.lights:
         area = (trace_area_lights(g, view, gb, octree, block), block)

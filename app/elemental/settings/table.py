@@ -33,11 +33,16 @@ TABLE = (
         source="[Mittring12]",
     ),
     Setting(
-        # 9: the talk's. With area lights seen through cones of their own, 36 find 0 to 4 % more
-        # light for three times the cost (docs/gi.md).
-        "gi.diffuse_cones", "choice", 9,
+        # 9: the talk's. 36 that pixels share cost as much, without its clouds (docs/gi.md).
+        "gi.diffuse_cones", "choice", 36,
         "cones over the sphere that gather diffuse light; more cost more and err less",
         unit="cones", choices=(9, 36, 63), source="[Mittring12] [Segovia06]",
+    ),
+    Setting(
+        "gi.diffuse_pattern", "choice", 6,
+        "side of the squares of pixels that share the diffuse cones: 3, a ninth each; 6, one each "
+        "of 36 cones",
+        unit="pixels", choices=(3, 6), source="[Segovia06]",
     ),
     Setting(
         "gi.bounces", "int", 1,

@@ -63,7 +63,7 @@ def gather(
     return run_glsl(
         stage.device,
         ["lib/voxel_gather.glsl"],
-        "gathered_radiance(p, n, 0.0)",
+        "gathered_radiance(p, n, 0.0, 0u)",
         {"p": points, "n": normal},
         "vec3",
         reads={**stage.octree.tracing_reads(), **stage.sky.reads()},

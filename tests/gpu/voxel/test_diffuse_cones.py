@@ -6,6 +6,7 @@ Frames of the whole renderer, looked at as irradiance / pi.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -14,11 +15,17 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from elemental.core.paths import glsl_root
 from elemental.frame import Renderer
 from elemental.gpu.device import Device
 from elemental.gpu.formats import RGBA16F
 from elemental.passes.camera_view import pack_view
-from elemental.passes.cone_trace.diffuse import SPLITS, combine_diffuse
+from elemental.passes.cone_trace.diffuse import (
+    SHARED_SPLIT,
+    SPLITS,
+    combine_diffuse,
+    share_cones,
+)
 from elemental.passes.gbuffer import draw_gbuffer
 from elemental.passes.scene_gpu import GpuScene
 from elemental.scene.model import Camera, Environment, Scene
@@ -60,10 +67,14 @@ def ball(environment: Environment) -> tuple[Scene, Camera]:
     return world, camera(vector(1.5, 1.2, 3.5), vector(0, 0, 0), fov_y=0.75)
 
 
-@pytest.mark.parametrize("cones", [9 * split for split in SPLITS])
-def test_a_furnace_lights_a_sphere_to_one(diffuse_gi: Draw, cones: int) -> None:
+CONES = [(9 * split, 3) for split in SPLITS] + [(9 * SHARED_SPLIT, 6)]
+"""gi.diffuse_cones, gi.diffuse_pattern."""
+
+
+@pytest.mark.parametrize(("cones", "side"), CONES)
+def test_a_furnace_lights_a_sphere_to_one(diffuse_gi: Draw, cones: int, side: int) -> None:
     """At every pixel; nine undivided cones may stray by half as much again."""
-    lit = diffuse_gi(*ball(WHITE), **{"gi.diffuse_cones": cones})
+    lit = diffuse_gi(*ball(WHITE), **{"gi.diffuse_cones": cones, "gi.diffuse_pattern": side})
     lit = lit[np.isfinite(lit[..., 0])]
     print(f"furnace, {cones} cones: {lit[:, 0].mean():.4f}, {lit[:, 0].min():.4f} at least")
     assert len(lit) > 1000
@@ -78,22 +89,26 @@ def sky_from_one_side() -> Environment:
     return Environment(np.repeat(radiance, 3, axis=2).astype(np.float32), vector(1, 1, 1), 1.0)
 
 
-def pattern(image: Array) -> float:
-    """How far pixels stray from the mean of their 3x3, which holds every cone once."""
-    height, width = (3 * (side // 3) for side in image.shape[:2])
-    shifted = [np.roll(image, (y, x), axis=(0, 1)) for y in (-1, 0, 1) for x in (-1, 0, 1)]
-    strays = (image - np.mean(shifted, axis=0))[1 : height - 1, 1 : width - 1]
+def pattern(image: Array, side: int) -> float:
+    """How far pixels stray from the means of squares around them that hold every cone once."""
+    near = side // 2
+    reach = range(-near, side - near)
+    shifted = np.mean([np.roll(image, (y, x), axis=(0, 1)) for y in reach for x in reach], axis=0)
+    if side % 2 == 0:  # the middle of an even square lies between pixels
+        shifted = np.mean([np.roll(shifted, (y, x), (0, 1)) for y in (0, -1) for x in (0, -1)], 0)
+    strays = (image - shifted)[side:-side, side:-side]
     return float(np.std(strays) / np.mean(image))
 
 
-@pytest.mark.parametrize("cones", [9 * split for split in SPLITS])
-def test_no_pattern_of_the_nine_cones_is_seen(diffuse_gi: Draw, cones: int) -> None:
+@pytest.mark.parametrize(("cones", "side"), CONES)
+def test_no_pattern_of_the_cones_is_seen(diffuse_gi: Draw, cones: int, side: int) -> None:
     world = scene((mesh(quad(4.0)), IDENTITY), environment=sky_from_one_side())
     eye = camera(vector(0.0, 2.0, 0.7), vector(0, 0, 0), fov_y=0.5)
-    image = diffuse_gi(world, eye, **{"gi.diffuse_cones": cones})[..., 0]
+    words = {"gi.diffuse_cones": cones, "gi.diffuse_pattern": side}
+    image = diffuse_gi(world, eye, **words)[..., 0]
     assert np.isfinite(image).all()
-    print(f"pattern, {cones} cones: {pattern(image):.5f} of the mean")
-    assert pattern(image) <= 0.005
+    print(f"pattern, {cones} cones: {pattern(image, side):.5f} of the mean")
+    assert pattern(image, side) <= 0.005
 
 
 def by_cone(values: Array) -> Array:
@@ -109,6 +124,7 @@ class Combiner:
     device: Device
     world: Scene
     split: int = SPLITS[0]
+    shared: bool = False
 
     def depth(self) -> Array:
         """(H, W) of the G-buffer, row 0 on top."""
@@ -133,6 +149,8 @@ class Combiner:
             texture = self.device.texture("cones", SIZE, RGBA16F, data=np.ascontiguousarray(parts))
             radiance = g.texture("cones", SIZE, RGBA16F)
             g.copy_texture(texture, radiance)
+            if self.shared:
+                radiance = share_cones(g, view, gb, radiance)
             diffuse, _ = combine_diffuse(g, view, gb, radiance, self.split, None)
             image = read(g, diffuse)
             texture.release()
@@ -161,6 +179,37 @@ def test_every_pixel_of_a_plane_weighs_the_nine_cones_alike(
         single[cone, :3] = 4.0
         image = combiner.combine(by_cone(single))[..., 0]
         assert np.ptp(image) <= 2.0**-10 * 4.0, cone
+
+
+def by_part(values: Array) -> Array:
+    """(H, W, 4) pixels, row 0 on top, that say (9, 4, 4) values by the cone that each traces."""
+    y, x = np.mgrid[SIZE[1] - 1 : -1 : -1, 0 : SIZE[0]]
+    return np.asarray(values[x % 3 + 3 * (y % 3), x // 3 % 2 + 2 * (y // 3 % 2)])
+
+
+def table_of_cones(count: int) -> Array:
+    """(count, 3) CONE_DIRECTIONS of glsl/lib/cone_directions.glsl."""
+    source = (glsl_root() / "lib/cone_directions.glsl").read_text()
+    table = source.split(f"CONE_DIRECTIONS[{count}] = ")[1].split(";")[0]
+    rows = re.findall(r"vec3\((-?[\d.]+), (-?[\d.]+), (-?[\d.]+)\)", table)
+    return np.array(rows, np.float64)
+
+
+@pytest.mark.parametrize("normal", [(0, 1, 0), (0.2, 1, 0.4)])
+def test_every_pixel_shares_all_36_cones(
+    device: Device, normal: tuple[float, float, float]
+) -> None:
+    """One value a cone: the image is the mean by the cones' weights c (1 + s c), at the rim too."""
+    world = scene((mesh(quad(8.0)), facing(vector(*normal))))
+    values = np.ones((9, SHARED_SPLIT, 4))
+    values[..., :3] = np.random.default_rng(2).uniform(0.1, 9.0, (9, SHARED_SPLIT, 3))
+    cosines = table_of_cones(36) @ (np.array(normal) / np.linalg.norm(normal))
+    weights = np.where(cosines > 0.1, cosines * (1 + 0.12 * cosines), 0.0)
+    rejected = weights.reshape(9, SHARED_SPLIT) == 0.0
+    wanted = weights @ values.reshape(36, 4)[:, :3] / weights.sum()
+    values[rejected, 3] = -1.0
+    image = Combiner(device, world, SHARED_SPLIT, shared=True).combine(by_part(values))[..., :3]
+    np.testing.assert_allclose(image, np.broadcast_to(wanted, image.shape), 0.004)
 
 
 @pytest.mark.parametrize("split", SPLITS)

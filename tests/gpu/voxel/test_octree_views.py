@@ -188,9 +188,12 @@ def test_mirrored_cones_take_more_steps_the_farther_they_go(device: Device) -> N
 
 
 def test_diffuse_cones_in_a_crease_are_short(device: Device) -> None:
-    """Half of them meet the wall at once; elsewhere all leave the scene, or reach it later."""
+    """Half of them meet the wall at once; elsewhere all leave the scene, or reach it later.
+
+    Narrow ones go on along the crease.
+    """
     eye = camera(vector(0, 2.5, 2.5), vector(0, 0, -1.0), fov_y=0.6)
     column = show(device, mirror_before_a_wall(), eye, "diffuse_steps")[:, 32] @ LUMINANCE
     crease = int(np.argmin(column))
     assert 12 <= crease <= 18, "where the wall meets the floor"
-    assert 0.0 < column[crease] < 0.6 * np.median(column)
+    assert 0.0 < column[crease] < 0.9 * np.median(column)

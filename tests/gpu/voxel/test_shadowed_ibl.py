@@ -104,16 +104,20 @@ def exact(x: float, walls: tuple[float, ...]) -> float:
 
 
 @pytest.mark.parametrize(
-    ("walls", "off"), [((), 0.02), ((1.0,), 0.12), ((-1.0, 1.0), 0.28)], ids=["none", "one", "two"]
+    ("walls", "mean", "worst"),
+    [((), 0.01, 0.02), ((1.0,), 0.12, 0.18), ((-1.0, 1.0), 0.28, 0.43)],
+    ids=["none", "one", "two"],
 )
 def test_the_floor_gathers_what_the_walls_leave_of_the_sky(
-    stage: MakeStage, walls: tuple[float, ...], off: float
+    stage: MakeStage, walls: tuple[float, ...], mean: float, worst: float
 ) -> None:
-    """``off``: the relative error reached: wide cones hide too much beside walls (docs/gi.md)."""
+    """The relative errors reached: wide cones hide too much beside walls (docs/gi.md)."""
     made = court(stage, *walls)
-    x = np.array([-0.5, 0.0, 0.4])
+    x = np.linspace(-0.6, 0.6, 13)
     p = np.stack([x, 0 * x, 0 * x], axis=-1)
     found = gather(made, p, vector(0, 1, 0))[:, 0]
     wanted = np.array([exact(float(v), walls) for v in x])
-    print(f"walls {walls}: {found.round(3)} of {wanted.round(3)}")
-    np.testing.assert_allclose(found, wanted, rtol=off)
+    errors = found / wanted - 1.0
+    print(f"walls {walls}: {errors.mean():+.3f} in the mean, {np.abs(errors).max():.3f} at worst")
+    assert abs(errors.mean()) <= mean
+    assert np.abs(errors).max() <= worst

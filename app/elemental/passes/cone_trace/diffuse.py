@@ -7,14 +7,20 @@ from elemental.gpu.formats import RGBA16F
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import Ref, TextureHandle
 from elemental.gpu.shaders import Compute
-from elemental.passes.cone_trace.interleave import sub_image_groups, sub_images_size
+from elemental.passes.cone_trace.interleave import part_groups, sub_image_groups, sub_images_size
 from elemental.passes.gbuffer import GBuffer
 from elemental.passes.sky import Sky
 from elemental.passes.voxel.octree import Octree
 
 SPLITS = (1, 4, 7)
 """Narrower cones that each of them may be traced as."""
+SHARED_SPLIT = 4
+"""As many as 2x2 patterns can deal out, one a pixel."""
 TRACE = {n: Compute("cone_trace/diffuse.comp.glsl", defines={"CONE_SPLIT": n}) for n in SPLITS}
+TRACE_PART = Compute(
+    "cone_trace/diffuse.comp.glsl", defines={"CONE_SPLIT": SHARED_SPLIT, "SHARED": 1}
+)
+SHARE = Compute("cone_trace/share.comp.glsl", defines={"CONE_SPLIT": SHARED_SPLIT})
 COMBINE = {
     (split, area): Compute(
         "cone_trace/combine.comp.glsl", defines={"CONE_SPLIT": split, "AREA_LIGHTS": int(area)}
@@ -25,16 +31,17 @@ COMBINE = {
 
 
 def trace_diffuse(
-    g: Graph, view: Block, gb: GBuffer, octree: Octree, sky: Sky, split: int
+    g: Graph, view: Block, gb: GBuffer, octree: Octree, sky: Sky, split: int, shared: bool
 ) -> TextureHandle:
     """Nine sub-images of incoming radiance, one cone each: (3 ceil(H/3), 3 ceil(W/3)) RGBA16F.
 
     rgb: W/(m^2 sr); a: visibility of the sky, -1 where the cone is behind the surface.
-    ``split``: of SPLITS.
+    ``split``: of SPLITS. ``shared``: of SHARED_SPLIT narrower cones a pixel traces one, and takes
+    the others from the pixels around it.
     """
     radiance = g.texture("cones.diffuse", size=sub_images_size(gb), format=RGBA16F)
     g.compute(
-        TRACE[split],
+        TRACE_PART if shared else TRACE[split],
         "cones.diffuse",
         reads={
             "u_depth": gb.depth,
@@ -44,9 +51,23 @@ def trace_diffuse(
         },
         writes={"o_radiance": radiance},
         params={"View": view, **octree.params, **sky.params()},
+        groups=part_groups(gb) if shared else sub_image_groups(gb),
+    )
+    return share_cones(g, view, gb, radiance) if shared else radiance
+
+
+def share_cones(g: Graph, view: Block, gb: GBuffer, parts: TextureHandle) -> TextureHandle:
+    """Sub-images of each group's mean, as `trace_diffuse` gives them, from one part a pixel."""
+    groups = g.texture("cones.shared", like=parts)
+    g.compute(
+        SHARE,
+        "cones.share",
+        reads={"u_parts": parts, "u_depth": gb.depth, "u_gbuffer_a": gb.a},
+        writes={"o_radiance": groups},
+        params={"View": view},
         groups=sub_image_groups(gb),
     )
-    return radiance
+    return groups
 
 
 def combine_diffuse(

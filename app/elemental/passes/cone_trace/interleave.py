@@ -25,3 +25,9 @@ def sub_image_groups(gb: GBuffer) -> tuple[int, int, int]:
     """Work groups over (x, y) of a sub-image, one layer for each of the nine."""
     width, height = _sub_image_size(gb)
     return -(-width // GROUP), -(-height // GROUP), SUB_IMAGES
+
+
+def part_groups(gb: GBuffer) -> tuple[int, int, int]:
+    """The same over a quarter of a sub-image, a layer for each of the nine and its four parts."""
+    width, height = _sub_image_size(gb)
+    return -(-width // (2 * GROUP)), -(-height // (2 * GROUP)), 4 * SUB_IMAGES

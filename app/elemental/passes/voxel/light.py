@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from elemental.passes.shadow import ShadowMaps
     from elemental.passes.sky import Sky
 
-GATHER = {"GATHER": 1, "CONE_SPLIT": 1, "CLEARANCE": 8}
+GATHER = {"GATHER": 1, "CONE_SPLIT": 4, "SHARED": 1, "CLEARANCE": 16}
 GATHERS: dict[str, dict[str, int]] = {
     "nothing": {},
     "present": GATHER,
