@@ -11,7 +11,7 @@ import pytest
 
 from elemental.passes.light_pack import light_bounds
 from elemental.passes.shadow_budget import HALVINGS, LEAST_SIDE, ShadowBudget, Shares
-from elemental.passes.shadow_fit import ViewFrustum
+from elemental.passes.shadow_fit import ViewFrustum, point_views, spot_view
 from elemental.passes.shadow_tiles import Tile, TilePool
 from elemental.scene.model import Light
 
@@ -141,3 +141,11 @@ def test_tiles_that_do_not_fit_are_refused() -> None:
         TilePool(1, 64).assign({"a": 64, "b": 8})
     assert TilePool(0, 64).assign({}) == {}
     assert len(TilePool(1, 64).assign(dict.fromkeys(range(64), 8))) == 64
+
+
+def test_lights_far_from_the_origin_have_views() -> None:
+    """A step of a metre from there is none in 32 bits."""
+    far = lamp(1e12, 0.0)
+    bounds = (np.full(3, -1.0, np.float32), np.ones(3, np.float32))
+    assert len(point_views(far, bounds, 64)) == 6
+    assert np.isfinite(spot_view(replace(far, kind="spot"), bounds, 64).clip_from_world).all()

@@ -103,18 +103,19 @@ def cascade_views(
 def spot_view(light: Light, bounds: Bounds, resolution: int) -> FittedView:
     """A spot light's view: its outer cone, widened by the rim."""
     tangent = math.tan(min(light.outer_angle, math.radians(85.0))) / _rim_scale(resolution)
-    rotation = transforms.look_at(light.position, light.position + light.direction)
+    position = light.position.astype(np.float64)  # far away, a step of 1 m is none in 32 bits
+    rotation = transforms.look_at(position, position + light.direction)
     return _perspective(light, rotation, tangent, bounds, resolution)
 
 
 def point_views(light: Light, bounds: Bounds, resolution: int) -> list[FittedView]:
     """A point light's six views, each a right angle widened by the rim."""
     tangent = 1.0 / _rim_scale(resolution)
-    position = light.position
+    position = light.position.astype(np.float64)
     return [
         _perspective(
             light,
-            transforms.look_at(position, position + np.array(direction, np.float32), up),
+            transforms.look_at(position, position + np.array(direction), up),
             tangent,
             bounds,
             resolution,

@@ -204,7 +204,8 @@ def _moved_light(light: Light, world_from_model: FloatArray) -> Light:
 
 def _light_frame(light: Light) -> FloatArray:
     """world_from_light: -z is where it shines."""
-    return transforms.inverse(transforms.look_at(light.position, light.position + light.direction))
+    position = light.position.astype(np.float64)  # far away, a step of 1 m is none in 32 bits
+    return transforms.inverse(transforms.look_at(position, position + light.direction))
 
 
 def _light_turn(light: Light) -> FloatArray:

@@ -92,7 +92,7 @@ class Setting:
 
     def _require(self, allowed: bool, value: Any, shown: Any) -> Any:
         if not allowed:
-            text = shown if isinstance(shown, str) else repr(shown).strip("()")
+            text = str(shown).strip("()") if isinstance(shown, tuple) else str(shown)
             raise ValueError(f"{text[:60]!r} is not {self.range_text()}")
         return value
 

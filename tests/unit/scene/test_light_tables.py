@@ -91,6 +91,7 @@ def test_a_photometric_file_gives_shape_and_intensity(tmp_path: Path) -> None:
         (SUN + "mask_size = 0\n", r"lights\[0\].mask_size: should be greater than 0"),
         (SUN + "mask_scroll = [1]\n", r"lights\[0\].mask_scroll: "),
         (SPOT + "inner_angle_deg = 50\n", r"lights\[0\]: inner_angle_deg is greater"),
+        (SPOT + "outer_angle_deg = 1e-30\nlumen = 9\n", r"outer_angle_deg: should be 0.01 or more"),
         (SPOT + "outer_angle_deg = 95\n", r"lights\[0\].outer_angle_deg: should be 90 or less"),
     ],
 )

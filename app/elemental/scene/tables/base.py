@@ -13,7 +13,7 @@ NonNegative = Annotated[float, Field(ge=0.0, le=1e12)]
 Vec2 = Annotated[list[Number], Field(min_length=2, max_length=2)]
 Vec3 = Annotated[list[Number], Field(min_length=3, max_length=3)]
 Color = Annotated[list[NonNegative], Field(min_length=3, max_length=3)]
-HalfAngle = Annotated[float, Field(gt=0.0, le=90.0)]
+HalfAngle = Annotated[float, Field(ge=0.01, le=90.0)]
 FieldOfView = Annotated[float, Field(ge=0.01, le=179.0)]
 Name = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[^\x00-\x1f\x7f]*$")]
 
