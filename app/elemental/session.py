@@ -17,6 +17,7 @@ import numpy as np
 
 from elemental.core import transforms
 from elemental.core.errors import InputError, named_by
+from elemental.core.files import check_writable
 from elemental.core.images import read_environment
 from elemental.core.paths import named_file
 from elemental.gpu.device import Device
@@ -187,6 +188,7 @@ def check_output(flag: str, path: Path, suffixes: tuple[str, ...]) -> None:
             raise InputError(flag, str(path), "is a folder")
         if not path.parent.is_dir():
             raise InputError(flag, str(path), f"the folder {path.parent} does not exist")
+        check_writable(path)
     except OSError as error:
         raise InputError(flag, str(path), f"can't be written ({error.strerror})") from error
     if not os.access(path.parent, os.W_OK | os.X_OK):

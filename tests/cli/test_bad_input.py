@@ -107,6 +107,15 @@ def test_a_folder_that_cannot_be_written_is_refused(tmp_path: Path) -> None:
     assert_refused(result, "can't be written")
 
 
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
+def test_a_file_that_is_read_only_is_kept(tmp_path: Path) -> None:
+    write_corner(tmp_path)
+    (tmp_path / "out.png").write_bytes(b"mine")
+    (tmp_path / "out.png").chmod(0o444)
+    assert_refused(elemental("shot", "corner.gltf", "-o", "out.png", cwd=tmp_path), "read-only")
+    assert (tmp_path / "out.png").read_bytes() == b"mine"
+
+
 def test_without_a_display_a_window_is_refused(tmp_path: Path) -> None:
     scene = write_corner(tmp_path)
     result = elemental("run", scene, "--frames", 1, DISPLAY="", WAYLAND_DISPLAY="")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import tempfile
 from collections.abc import Iterator
@@ -47,6 +48,12 @@ def read_text(path: Path) -> str:
         raise InputError(path, "", reason) from error
 
 
+def check_writable(path: Path) -> None:
+    """Raises PermissionError for a file that its owner marked read-only; others may be replaced."""
+    if path.exists() and not os.access(path, os.W_OK):
+        raise PermissionError(errno.EACCES, "it is read-only")
+
+
 @contextmanager
 def atomic_file(path: Path) -> Iterator[Path]:
     """A temporary path in `path`'s folder that replaces `path` when the block ends well.
@@ -55,6 +62,7 @@ def atomic_file(path: Path) -> Iterator[Path]:
     """
     temporary: Path | None = None
     try:
+        check_writable(path)
         handle, name = tempfile.mkstemp(path.suffix, ".elemental-", path.parent)
         os.close(handle)
         temporary = Path(name)

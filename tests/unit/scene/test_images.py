@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import resource
 from collections.abc import Callable
 from pathlib import Path
@@ -237,3 +238,11 @@ def test_images_larger_than_textures_can_be_are_refused(tmp_path: Path) -> None:
         read_mask(tmp_path / "a.png")
     with pytest.raises(InputError, match=rf"a\.exr: {reason}"):
         read_environment(tmp_path / "a.exr")
+
+
+def test_a_read_only_file_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "a.png").write_bytes(b"mine")
+    monkeypatch.setattr(os, "access", lambda path, mode: False)  # root may write anywhere
+    with pytest.raises(InputError, match=r"a\.png: can't be written \(it is read-only\)"):
+        write_png(tmp_path / "a.png", RGB8)
+    assert (tmp_path / "a.png").read_bytes() == b"mine"

@@ -113,6 +113,7 @@ def test_a_light_without_radius_or_intensity_is_one(tmp_path: Path) -> None:
         (POINT + "outer_angle_deg = 9\n", "lights[0].outer_angle_deg: has no effect: a point"),
         (POINT + "direction = [1, 0, 0]\n", "lights[0].direction: has no effect: a point light"),
         (SUN + "range = 5\n", "lights[0].range: has no effect: a directional light is everywhere"),
+        (SPOT + "mask_size = 5\n", "lights[0].mask_size: has no effect: there is no mask"),
         (SPOT + "inner_angle_deg = 5\n", None),
         (POINT + 'ies = "lamp.ies"\nroll_deg = 9\ndirection = [1, 0, 0]\n', None),
     ],
