@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from elemental.session import Viewpoint, set_stage
 from elemental.ui.desk import Words
 from elemental.ui.docking import Docking, Room
 from elemental.ui.headless import HeadlessDesk
+from elemental.ui.preferences import Preferences
 from ui.robot import QUICK, Robot
 
 Hands = Callable[..., Robot]
@@ -113,7 +115,7 @@ def test_the_layout_follows_the_window_until_it_is_the_user_s(
     assert scene.dock_id == desk.workspace._docking.nodes["bottom"]
     names = [page.name for page in desk.workspace.pages]
     told = kept.partition("\n")[0].removeprefix("; workspace")
-    read = Docking.read(told, names)
+    read = Docking.read(json.loads(told), names)
     assert read is not None
     assert read.room == Room(1920.0, read.room.height, 15.0)
 
@@ -124,7 +126,8 @@ def test_a_kept_layout_opens_in_any_window(
 ) -> None:
     """Of another window's size, too; and lays the pages out again as large as they were."""
     robot = hands(scene_file, size=(1280, 720))
-    robot.frames(3)
+    robot.desk.workspace.bring_to_front("Graph")
+    robot.frames(4)
     kept = robot.desk.preferences
     before = robot.find("Scene/search")
     robot.screen.release()
@@ -136,6 +139,8 @@ def test_a_kept_layout_opens_in_any_window(
     robot.frames(8)
     if size == (1280, 720):
         assert robot.find("Scene/search") == before
+        assert robot.sees("Graph/canvas")  # which was in front
+        assert robot.sees("Settings/search")
     if size == (1600, 900):
         assert robot.find("Scene/search")[2] > 1.1 * before[2]
     robot.screen.size = (1280, 720)
@@ -144,14 +149,33 @@ def test_a_kept_layout_opens_in_any_window(
 
 
 BROKEN = (
-    "", "{", "[]", "3", '{"room": [0, 0, 0]}', '{"room": ["a"]}', '{"room": [9, 9, 1]}',
+    "[]", "3", '{"room": [0, 0, 0]}', '{"room": ["a"]}', '{"room": [9, 9, 1]}',
     '{"room": [9, 9, 1], "nodes": {"up": 1}, "pages": {}}',
 )  # fmt: skip
 
 
 @pytest.mark.parametrize("text", BROKEN)
 def test_a_broken_layout_s_head_costs_nothing(text: str) -> None:
-    assert Docking.read(text, []) is None
+    assert Docking.read(json.loads(text), []) is None
+
+
+HEADS = (
+    "", "; workspace", "; workspace {", "; workspace [3]", '; workspace {"front": 3}',
+    '; workspace {"front": ["No"]}',
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("head", HEADS)
+def test_a_broken_kept_layout_opens(
+    hands: Hands, device: Device, scene_file: Path, head: str
+) -> None:
+    stage = set_stage(str(scene_file), list(QUICK), Viewpoint(), (640, 360))
+    words = Words(str(scene_file), list(QUICK))
+    kept = Preferences(layout=f"{head}\n[Window][Scene]\nPos=1,2\nSize=no\n")
+    screen = HeadlessDesk(device, stage, words, (640, 360), preferences=kept)
+    for _ in range(3):
+        screen.draw()
+    screen.release()
 
 
 def test_the_first_frame_tells_no_time(hands: Hands, device: Device, scene_file: Path) -> None:

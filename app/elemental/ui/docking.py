@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 from imgui_bundle import imgui
 
@@ -117,16 +116,15 @@ class Docking:
             imgui.internal.dock_builder_set_node_size(number, extent)
         return False
 
-    def text(self) -> str:
-        """A line that ``read`` takes again."""
+    def told(self) -> dict[str, Any]:
+        """Plain values that ``read`` takes again."""
         room = [self.room.width, self.room.height, self.room.em]
-        return json.dumps({"room": room, "nodes": self.nodes, "pages": self.pages})
+        return {"room": room, "nodes": self.nodes, "pages": self.pages}
 
     @classmethod
-    def read(cls, text: str, names: Sequence[str]) -> Docking | None:
-        """What ``text`` wrote; None for any other text, or where a page is missing."""
+    def read(cls, held: Any, names: Sequence[str]) -> Docking | None:
+        """What ``told`` told; None for anything else, or where a page is missing."""
         try:
-            held = json.loads(text)
             room = Room(*(float(extent) for extent in held["room"]))
             nodes: dict[Place, int] = {place: int(held["nodes"][place]) for place in held["nodes"]}
             pages = {name: int(held["pages"][name]) for name in names}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -39,14 +40,27 @@ class Workspace:
         self._wants_layout = True
         if layout:
             imgui.load_ini_settings_from_memory(layout)
-            head, _, told = layout.partition("\n")[0].partition(f"; {MARK}")
-            self._wants_layout = bool(head) or f"; {MARK}" not in layout
-            self._docking = Docking.read(told, [page.name for page in pages])
+            self._wants_layout = not layout.startswith(f"; {MARK}")
+            self._take_over(layout.partition("\n")[0].removeprefix(f"; {MARK}"))
 
     def layout(self) -> str:
         """The places of everything, as ``Workspace`` takes it again."""
-        told = self._docking.text() if self._docking is not None else ""
-        return f"; {MARK} {told}\n{imgui.save_ini_settings_to_memory()}"
+        told = self._docking.told() if self._docking is not None else {}
+        told["front"] = [name for name, shows in self._shown.items() if shows]
+        return f"; {MARK} {json.dumps(told)}\n{imgui.save_ini_settings_to_memory()}"
+
+    def _take_over(self, head: str) -> None:
+        """The first line of a kept layout: docks that are ours, and pages in front of others."""
+        try:
+            held = json.loads(head)
+        except ValueError:
+            return
+        names = [page.name for page in self.pages]
+        self._docking = Docking.read(held, names)
+        front = held.get("front") if isinstance(held, dict) else None
+        for name in front if isinstance(front, list) else ():
+            if name in names:
+                self.bring_to_front(name)
 
     def reset_layout(self) -> None:
         """Put every page back where it was at first."""
