@@ -92,7 +92,7 @@ app = App(Window(words.size, "elemental"), stage, words)
 drawn = []
 ui.draw_hud = lambda figures, place, fonts: drawn.append(figures.size)
 ui.draw_keys = lambda: drawn.append("help")
-ui.draw_message = lambda text, place: drawn.append(text)
+ui.draw_message = lambda text, place, rgb: drawn.append(text)
 
 def after(action):
     app.act(action)
