@@ -42,5 +42,5 @@ void main() {
         result = diffuse_cone(p_ws, normal, own.cone);
 #endif
     }
-    imageStore(o_radiance, own.texel, result);
+    imageStore(o_radiance, own.texel, min(result, HALF_MAX));
 }
