@@ -25,7 +25,7 @@ from elemental.session import Viewpoint, set_stage  # noqa: E402
 from pass_clock import PassClock  # noqa: E402
 
 SIZE = (320, 180)
-SETTINGS = ("gi.bounces=1", "gi.diffuse_cones=9")
+SETTINGS = ("gi.bounces=1",)
 COUNTS = (1000,)
 ROUNDS = 9
 SIDE_M = (0.1, 0.35)
