@@ -114,7 +114,7 @@ def measure(name: str, frames: int, profiled: bool) -> None:
     cells = [f"{ms:.2f}" for t in (python, with_driver) for ms in (min(t), median(t))]
     print(f"| {name} | {passes} | " + " | ".join(cells) + " |", flush=True)
     if profiled:
-        pstats.Stats(profile).sort_stats("cumtime").print_stats(60)
+        pstats.Stats(profile).sort_stats("tottime").print_stats(60)
 
 
 def main() -> None:

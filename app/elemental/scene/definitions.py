@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import difflib
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 
 from elemental.core.errors import InputError, named_by
@@ -80,12 +80,15 @@ class MaterialDefinition:
         """What tells it from all others."""
         return str(self.file)
 
-    @property
+    def __hash__(self) -> int:
+        return hash(self.key)  # passes look shaders up by it
+
+    @cached_property
     def is_standard(self) -> bool:
         """Whether it is glTF's own material, lit."""
         return self._is_builtin(STANDARD)
 
-    @property
+    @cached_property
     def is_unlit(self) -> bool:
         """Whether it is glTF's KHR_materials_unlit."""
         return self._is_builtin(UNLIT)
