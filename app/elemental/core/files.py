@@ -44,8 +44,12 @@ def read_text(path: Path) -> str:
     try:
         return read_file(path).decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        reason = f"is not UTF-8 text (byte {error.start + 1})"
-        raise InputError(path, "", reason) from error
+        raise InputError(path, "", not_utf8(error)) from error
+
+
+def not_utf8(error: UnicodeDecodeError) -> str:
+    """The reason in our own words."""
+    return f"is not UTF-8 text (byte {error.start + 1})"
 
 
 def check_writable(path: Path) -> None:

@@ -15,7 +15,7 @@ from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import AoT, InlineTable, Table
 
 from elemental.core.errors import InputError
-from elemental.core.files import atomic_file, read_file
+from elemental.core.files import atomic_file, not_utf8, read_file
 
 
 class CannotEditError(Exception):
@@ -32,7 +32,7 @@ def rewrite(path: Path, change: Callable[[str], str]) -> None:
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise InputError(path, "TOML", f"is broken ({error})") from error
+        raise InputError(path, "", not_utf8(error)) from error
     changed = change(text).encode("utf-8")
     if changed == raw:
         return

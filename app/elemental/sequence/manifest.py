@@ -89,9 +89,7 @@ class Manifest:
             if told["schema"] != SCHEMA or not isinstance(known, dict):
                 raise ValueError("another kind of file")
         except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-            raise InputError(
-                self.path, "", f"is broken ({error}); --overwrite begins anew"
-            ) from error
+            raise InputError(self.path, "", "is broken; --overwrite begins anew") from error
         for name, value in self._shapes.items():
             if known.get(name) != value:
                 reason = f"holds frames of another {_difference(name, known.get(name), value)}"

@@ -11,7 +11,7 @@ from typing import NoReturn
 from urllib.parse import unquote, unquote_to_bytes
 
 from elemental.core.errors import InputError
-from elemental.core.files import read_file
+from elemental.core.files import not_utf8, read_file
 from elemental.scene.gltf.fields import Field, Report, printable
 
 GLB_MAGIC = b"glTF"
@@ -133,8 +133,7 @@ def _parse_json(path: Path, text: bytes) -> object:
     except RecursionError:
         raise InputError(path, "JSON", "is nested too deeply") from None
     except UnicodeDecodeError as error:
-        reason = f"is not UTF-8 text (byte {error.start + 1})"
-        raise InputError(path, "JSON", reason) from error
+        raise InputError(path, "JSON", not_utf8(error)) from error
     except json.JSONDecodeError as error:
         reason = f"is broken ({error.msg}: line {error.lineno} column {error.colno})"
         raise InputError(path, "JSON", reason) from error
@@ -152,4 +151,4 @@ def _decode_data_uri(uri: Field, text: str) -> bytes:
             return unquote_to_bytes(body)
         return base64.b64decode(unquote(body), validate=True)
     except ValueError as error:
-        raise uri.error(f"the data: URI is broken ({error})") from error
+        raise uri.error("the data: URI is broken (no base64)") from error
