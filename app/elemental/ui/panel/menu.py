@@ -105,8 +105,9 @@ def _title(w: Widgets, state: MenuState) -> None:
     w.note("title")
     left = width - imgui.calc_text_size(state.figures).x - imgui.get_style().window_padding.x
     if left > width / 2 + half:
-        imgui.same_line(left)
+        imgui.set_cursor_pos_x(left)
         w.text(state.figures, theme.MUTED)
+        w.note("costs")
 
 
 class _Items:

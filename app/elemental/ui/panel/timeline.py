@@ -31,8 +31,11 @@ UNKNOWN = "–"
 
 
 def ms_text(ms: float | None) -> str:
-    """A time, or a dash where there is none yet."""
-    return UNKNOWN if ms is None else f"{ms:.2f} ms"
+    """A time in three digits or more, or a dash where there is none yet."""
+    if ms is None:
+        return UNKNOWN
+    places = 2 if ms < 10.0 else 1 if ms < 100.0 else 0
+    return f"{ms:,.{places}f} ms"
 
 
 def system_of(name: str) -> str:
@@ -91,8 +94,12 @@ def _history(w: Widgets, history: npt.NDArray[np.float32]) -> None:
     imgui.plot_lines("##history", history, 0, "", 0.0, top, size)
     w.note("history")
     w.tooltip(f"{len(history)} frames, the newest at the right; 0 to {top:.0f} ms")
+    told, canvas = f"{top:,.0f} ms", imgui.get_window_draw_list()
     place = imgui.ImVec2(corner.x + 0.4 * em, corner.y + 0.15 * em)
-    imgui.get_window_draw_list().add_text(place, theme.packed(theme.MUTED), f"{top:.0f} ms")
+    size = imgui.calc_text_size(told)
+    end = imgui.ImVec2(place.x + size.x, place.y + size.y)
+    canvas.add_rect_filled(place, end, theme.packed(theme.BACKDROP, 0.8), 2.0)
+    canvas.add_text(place, theme.packed(theme.MUTED), told)
 
 
 def _strip(w: Widgets, gpu_ms: Mapping[str, float], total: float, hues: Mapping[str, Rgb]) -> None:
