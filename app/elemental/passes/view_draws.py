@@ -60,10 +60,9 @@ class CullCounters:
 class ViewDraws:
     """Draw commands of the instances that the camera sees.
 
-    `visible` holds them; `occluders` those that it saw a frame ago, where `hides`: their depth
-    tells what others hide.
-    Nothing is read back: a frame draws what was seen in the last one, then what its depth doesn't
-    hide. Frames of one view and one scene go on with the commands that they have.
+    `visible` holds them. A frame that `hides` draws `occluders` first, of what the frame before
+    saw: their depth tells what others hide. Nothing is read back. Frames of one view and one scene
+    go on with the commands that they have.
 
     From `everything` that could be drawn, of which `solid` (D,) DRAW_COMMAND come first.
     """
@@ -77,7 +76,7 @@ class ViewDraws:
         place: Callable[[str], Placed],
     ) -> None:
         self._everything, self._table, self._commands = everything, table, len(solid)
-        self._visible, self._occluders = place(CAMERA), place(OCCLUDERS)
+        self._visible, self.occluders = place(CAMERA), place(OCCLUDERS)
         self.counters = CullCounters()
         order = everything.order.nbytes
         self._seen = device.buffer("scene.seen", np.zeros(order // 4, "<u4"), category="meshes")
@@ -86,17 +85,12 @@ class ViewDraws:
         self._many = int(corners) >= 3 * OCCLUSION_FROM
         self._key: tuple[object, ...] = ()
         self._frames = 0
-        self._culls = self.hides = self._rests = False
+        self._culls = self.hides = False
 
     @property
     def visible(self) -> Placed:
         """What the camera sees."""
         return self._visible if self._culls else self._everything
-
-    @property
-    def occluders(self) -> Placed:
-        """What to draw first, of opaque instances, for its depth."""
-        return self._occluders
 
     def moved(self, rows: range) -> None:
         """Take over the boxes of instances that changed."""
@@ -116,19 +110,15 @@ class ViewDraws:
         key = (np.asarray(view["clip_from_world"]).tobytes(), size, version, culling)
         self._frames = self._frames + 1 if key == self._key else 0
         self._key = key
-        self._culls, self.hides = culling != "none", culling == "occlusion"
-        self._rests = self._frames >= SETTLED
-        if self._rests or not self._culls:
-            return
+        rests = self._frames >= SETTLED
+        self._culls, self.hides = culling != "none", culling == "occlusion" and not rests
         if self.hides:
-            self._cull(g, SEEN_BEFORE, view, self._occluders, {"Seen": self._seen})
-        else:
+            self._cull(g, SEEN_BEFORE, view, self.occluders, {"Seen": self._seen})
+        elif self._culls and not rests:
             self._cull_and_count(g, IN_FRUSTUM, view, {})
 
     def finish(self, g: Graph, view: Block, depth: TextureHandle) -> None:
         """Find out what is seen, once `occluders` are drawn into the depth buffer, (W, H) px."""
-        if self._rests:
-            return
         reads: dict[str, Ref] = {"u_depth_pyramid": depth_pyramid(g, depth)}
         self._cull_and_count(g, SEEN_NOW, view, {"Seen": self._seen}, reads)
 
@@ -169,7 +159,7 @@ class ViewDraws:
 
     def release(self) -> None:
         """Free everything but `everything`."""
-        for placed in (self._visible, self._occluders):
+        for placed in (self._visible, self.occluders):
             placed.release()
         for buffer in (self._seen, self._boxes):
             buffer.release()
