@@ -26,6 +26,8 @@ SIZE = (256, 240)
 COLUMNS = 4
 TIME_S = 2.0
 QUALITY = 88
+FROM_BEFORE = np.array([0.48, -0.64, -0.6], np.float32)
+"""The way that the sun travels where something is lit from the eye's side."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +89,9 @@ def pictures(device: Device) -> Iterator[tuple[str, Image.Image]]:
         yield label, picture(device, scene, settings)
     scene, settings = open_scene("backlit", ())
     flag = load_scene("backlit", default_lights=False).materials[0].with_definition(builtin("flag"))
-    scene.materials[0] = flag.with_value("height", 0.06).with_value("wavelength", 0.25)
+    flag = flag.with_value("height", 0.06).with_value("wavelength", 0.25)
+    scene.materials[0] = flag.with_value("base_color", (0.7, 0.06, 0.04, 1.0))
+    scene.lights[0] = replace(scene.lights[0], direction=FROM_BEFORE)
     yield "flag: displaced", picture(device, scene, settings)
     scene, settings = open_scene("material_ball", ())
     with TemporaryDirectory() as folder:
