@@ -260,6 +260,16 @@ def test_what_opens_over_the_picture_fits_the_window(
     assert right <= desk.place[2]
 
 
+def test_the_keys_leave_the_panel_at_work(hands: Hands, scene_file: Path) -> None:
+    robot = hands(scene_file, size=(1600, 900))
+    robot.desk.act("help")
+    robot.frames(3)
+    robot.click("search")
+    robot.type("exposure", enter=False)
+    robot.enter_number("exposure", "1.5")
+    assert robot.setting("exposure") == 1.5
+
+
 def test_an_override_goes_back_to_the_scene_s_value(hands: Hands, scene_file: Path) -> None:
     scene_file.write_text(scene_file.read_text() + MORE)
     robot = hands(scene_file, page="Volumes", size=(1200, 1000))

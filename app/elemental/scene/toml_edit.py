@@ -93,6 +93,8 @@ def append_table(document: Any, name: str, content: Mapping[str, Any]) -> None:
     for key, value in content.get("settings", {}).items():
         assign_setting(table, "settings", key, value)
     if name not in document:
+        if len(document):
+            document.add(tomlkit.nl())
         document[name] = tomlkit.aot()
     tables = document[name]
     if not isinstance(tables, AoT):

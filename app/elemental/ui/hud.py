@@ -118,9 +118,9 @@ def draw_keys() -> None:
     blocks = 2 if low and room.x > 2.0 * BLOCK_EM * em else 1
     largest = imgui.ImVec2(room.x - 2.0 * MARGIN_PX, room.y - 2.0 * MARGIN_PX)
     imgui.set_next_window_size_constraints(imgui.ImVec2(0.0, 0.0), largest)
-    imgui.set_next_window_focus()
-    scrolls = imgui.WindowFlags_.no_inputs.value | imgui.WindowFlags_.no_scrollbar.value
-    _begin("keys", (center.x, center.y), (0.5, 0.5), 0.97, _PANEL & ~scrolls)
+    passive = imgui.WindowFlags_.no_inputs.value | imgui.WindowFlags_.no_scrollbar.value
+    passive |= imgui.WindowFlags_.no_focus_on_appearing.value
+    _begin("keys", (center.x, center.y), (0.5, 0.5), 0.97, _PANEL & ~passive)
     _colored(theme.ACCENT, "Keys")
     imgui.separator()
     height = -(-len(rows) // blocks)

@@ -210,6 +210,7 @@ def test_images_and_shaders_are_named_from_the_scene(tmp_path: Path) -> None:
         assert slot is not None
         assert again.textures[slot.texture].name == "dots"
     assert '"../dots.png"' in path.read_text()
+    assert '.gltf"\n\n[[materials]]\n' in path.read_text()  # set apart from what stood there
     back = [worn[0].with_image("normal_texture", 0), *worn[1:]]
     save_scene(path, path, Changes(materials=MaterialChanges(worn, back, textures)))
     assert load_scene(path, default_lights=False).materials[0].normal_texture is None
