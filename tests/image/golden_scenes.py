@@ -168,7 +168,7 @@ LENS: dict[str, Any] = {
     "vignette.intensity": 0.6,
     "bloom.intensity": 0.7,
     "bloom.dirt_mask": "dirt.png",
-    "lens_flare.intensity": 16.0,
+    "lens_flare.intensity": 3.0,
     "lens_flare.threshold": 6.0,
     "color_grading.lut": "evening.cube",
     "scene_color.fringe": 0.5,

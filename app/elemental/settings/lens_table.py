@@ -50,7 +50,7 @@ LENS_TABLE = (
     Setting("bloom.dirt_intensity", "float", 1.0, "factor on that dirt", lo=0, hi=8, volume=True),
     Setting("bloom.dirt_tint", "color", (0.5, 0.5, 0.5), "tint of that dirt",
             lo=0, hi=1, volume=True),
-    Setting("lens_flare.intensity", "float", 1.0,
+    Setting("lens_flare.intensity", "float", 0.25,
             "factor on reflections in the lens; 0: none", lo=0, hi=16, source="[Mittring12]",
             volume=True),
     Setting("lens_flare.threshold", "float", 8.0,

@@ -149,7 +149,7 @@ def test_defaults_are_the_tables() -> None:
         "eye_adaptation.min_brightness": 0.03, "eye_adaptation.max_brightness": 2,
         "eye_adaptation.speed_up": 3, "eye_adaptation.speed_down": 1,
         "eye_adaptation.log_min": -8, "eye_adaptation.log_max": 4, "exposure": 0,
-        "lens_flare.intensity": 1, "lens_flare.bokeh_size": 3, "lens_flare.threshold": 8,
+        "lens_flare.intensity": 0.25, "lens_flare.bokeh_size": 3, "lens_flare.threshold": 8,
         "film.slope": 0.88, "film.toe": 0.55, "film.shoulder": 0.26, "film.black_clip": 0,
         "film.white_clip": 0.04, "vignette.intensity": 0.4, "grain.intensity": 0,
         "grain.jitter": 0, "scene_color.fringe": 0, "color_grading.intensity": 1,

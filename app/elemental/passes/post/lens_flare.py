@@ -48,9 +48,8 @@ SMALLEST_RADIUS = 1.0
 """Of a sprite, px of the picture's quarter: a texel's light always spreads a little [inferred]."""
 SMALLEST_COPY = 0.02
 """Least size of a copy, share of the picture [inferred]."""
-REFLECTED = 0.0001
-"""Share of the light in each copy at intensity 1: two reflections at coated glass, 1 % each; at 16,
-the highest, at plain glass, 4 % each."""
+REFLECTED = 0.0016
+"""Share of the light in each copy at intensity 1: two reflections at plain glass, 4 % each."""
 HALF_MAX = float(np.finfo(np.float16).max)
 SIZE_PER_POSITION = 4.0
 """A position of 0.5 is the centre, 0.75 the picture itself, 0.25 its mirror image [inferred]."""
