@@ -29,13 +29,14 @@ vec3 area_light_radiance(vec3 p_ws, vec3 normal, float spacing) {
     return sum * INVERSE_PI;
 }
 
-// 1: a voxel traces one cone of each group, and the eight of a brick all of them: neighbours along any
-// two axes take different ones, and what filters them takes the mean.
+// 1: a voxel traces two of each group's four cones, its neighbours along each axis the other two, and what
+// filters them takes the mean. One each would stand as a pattern in mirrors, which see single voxels.
 #ifndef SHARED
 #define SHARED 0
 #endif
 
-int part_of_voxel(uint octant) { return int((octant & 3u) ^ (octant >> 2) * 3u); }
+// The first of them; the second is its complement.
+int part_of_voxel(uint octant) { return int((octant ^ (octant >> 1) ^ (octant >> 2)) & 1u); }
 
 // Cosine-weighted mean of the radiance around the normal. octant: the voxel's place in its brick.
 vec3 gathered_radiance(vec3 p_ws, vec3 normal, float spacing, uint octant) {
@@ -44,16 +45,20 @@ vec3 gathered_radiance(vec3 p_ws, vec3 normal, float spacing, uint octant) {
     float weights = 0.0;
     for (int i = 0; i < CONE_COUNT; ++i) {
 #if SHARED
-        vec3 direction = CONE_DIRECTIONS[i * CONE_SPLIT + part_of_voxel(octant)];
-        float weight = cone_weight(normal, direction);
-        if (weight <= 0.0) continue;
-        sum += weight * narrow_cone(from, normal, direction).rgb;
+        int part = part_of_voxel(octant);
+        for (int other = 0; other < 2; ++other, part ^= 3) {
+            vec3 direction = CONE_DIRECTIONS[i * CONE_SPLIT + part];
+            float weight = cone_weight(normal, direction);
+            if (weight <= 0.0) continue;
+            sum += weight * narrow_cone(from, normal, direction).rgb;
+            weights += weight;
+        }
 #else
         float weight = cone_group_weight(normal, i);
         if (weight <= 0.0) continue;
         sum += weight * diffuse_cone(from, normal, i).rgb;
-#endif
         weights += weight;
+#endif
     }
     return sum / max(weights, 1e-6) + area_light_radiance(p_ws, normal, spacing);
 }
