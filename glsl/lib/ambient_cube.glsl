@@ -19,12 +19,30 @@ float hidden_share(float cover, float opacity, float own) {
     return max(min(cover, opacity), opacity - own);
 }
 
+// Opacity along an axis from which on a layer counts as partly whole, and from which on as whole.
+const vec2 WHOLE_LAYER = vec2(0.3, 0.9);
+// A whole layer hides as much at any angle down to this cosine.
+const float LEAST_AHEAD = 0.2;
+
+// Opacity along a unit direction, for a voxel of the way, from those along the axes. Projected areas add
+// by the cosines, and no more is hidden than along the fullest axis. What covers a part of the voxel, as
+// bars or an edge beside the ray do, covers less of a ray that passes at an angle; a whole layer does not:
+// it is crossed on a longer way, by one over the cosine, and what counts is what it hides there.
+float opacity_along(vec3 cosines, vec3 opaque) {
+    vec3 met = cosines * opaque;
+    vec2 ahead = met.x >= max(met.y, met.z) ? vec2(cosines.x, opaque.x)
+                 : met.y >= met.z ? vec2(cosines.y, opaque.y) : vec2(cosines.z, opaque.z);
+    float whole = smoothstep(WHOLE_LAYER.x, WHOLE_LAYER.y, ahead.y);
+    float sum = (met.x + met.y + met.z) / mix(1.0, max(ahead.x, LEAST_AHEAD), whole);
+    return min(sum, max(opaque.x, max(opaque.y, opaque.z)));
+}
+
 // What a ray along a unit direction sees of three sides: premultiplied radiance and opacity. Of a side,
 // a is what fronts of surfaces cover, rgb their radiance times that; opaque: opacities along the axes.
 //
 // Areas add by the cosines, as projected ones do: radiance is the mean over the fronts that the ray sees,
 // sides that are fuller counting more, since in those that a wall before it crosses edge-on stands what is
-// behind the wall as well. What is hidden is no more than the fullest axis hides. Backs are dark.
+// behind the wall as well. Backs are dark.
 vec4 mean_of_sides(vec4 x, vec4 y, vec4 z, vec3 opaque, vec3 direction, float own) {
     vec3 cosines = abs(direction);
     vec3 covers = vec3(x.a, y.a, z.a) + COVER_NOISE;
@@ -32,7 +50,7 @@ vec4 mean_of_sides(vec4 x, vec4 y, vec4 z, vec3 opaque, vec3 direction, float ow
     float area = areas.x + areas.y + areas.z;
     float cover = area * area / dot(areas, cosines);
     vec3 radiance = (areas.x * x.rgb + areas.y * y.rgb + areas.z * z.rgb) / dot(areas, covers);
-    float opacity = min(dot(cosines, opaque), max(opaque.x, max(opaque.y, opaque.z)));
+    float opacity = opacity_along(cosines, opaque);
     float hides = hidden_share(cover, opacity, own);
     float whole = min((hides + FEW_CODES) / (cover + FEW_CODES), 1.0 / LEAST_COVER);
     return vec4(radiance * cover * whole, hides);
@@ -40,12 +58,6 @@ vec4 mean_of_sides(vec4 x, vec4 y, vec4 z, vec3 opaque, vec3 direction, float ow
 
 // A short mean normal says that the voxel's surfaces face several ways.
 float normal_certainty(float squared_length) { return min(squared_length * 4.0, 1.0); }
-
-// Share of a side that a leaf's front covers, from the squared length of its mean normal and the cosine
-// between that and the side.
-float front_share(float squared_length, float cosine) {
-    return mix(1.0, max(cosine, 0.0), normal_certainty(squared_length));
-}
 
 // How many voxels a layer with this mean normal has on the area of one: fewer where the lattice cuts it
 // at an angle, by the largest component of its normal.

@@ -34,6 +34,8 @@ struct Run {
     float arrived;    // share of the cone
 };
 const float FULLEST = 0.65;       // of a layer's opacity that the fullest sample has at least
+const vec2 LAYERS = vec2(1.2, 1.8);  // voxels: a run's integral by its fullest sample, of one layer and of more
+const vec2 PARTLY = vec2(0.2, 0.55);   // opacities of the fullest sample: part of the cone, or maybe all of it
 // Coarse levels' layers are a little thicker than a voxel; the finest level's voxels stand in steps where
 // the lattice cuts a layer at an angle, and a narrow cone meets fewer of them than there are on average.
 const float COARSE_SHARE = 0.84;
@@ -47,7 +49,11 @@ float layer_opacity(float covered) { return covered * covered * (3.0 - 2.0 * cov
 float extend(inout Run run, float a, float voxels, float lod) {
     run.integral += mix(FINEST_SHARE, COARSE_SHARE, min(lod, 1.0)) * a * voxels;
     run.fullest = max(run.fullest, a);
-    float hides = layer_opacity(min(min(run.integral, run.fullest / FULLEST), 1.0));
+    // A profile as long as two voxels or more is of many things that cover a part each, or of a thick
+    // one: its fullest sample is their share.
+    float spread = smoothstep(LAYERS.x, LAYERS.y, run.integral / run.fullest);
+    float share = mix(FULLEST, 1.0, spread * (1.0 - smoothstep(PARTLY.x, PARTLY.y, run.fullest)));
+    float hides = layer_opacity(min(min(run.integral, run.fullest / share), 1.0));
     float fresh = run.arrived * max(hides - run.hides, 0.0);
     run.hides = max(run.hides, hides);
     return fresh;

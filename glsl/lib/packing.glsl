@@ -35,6 +35,9 @@ uint normal_snorm8_pack(vec3 n) {
     return packSnorm4x8(vec4(n / largest, 0.0)) & 0x00ffffffu;
 }
 
+// The bit, of six, of the side of a surface that a line along an axis meets: +x -x +y -y +z -z.
+uint side_met(int axis, vec3 normal) { return 1u << (2 * axis + int(normal[axis] < 0.0)); }
+
 vec3 normal_snorm8_unpack(uint code) {
     vec3 n = unpackSnorm4x8(code & 0x00ffffffu).xyz;
     float squared = dot(n, n);

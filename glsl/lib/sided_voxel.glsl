@@ -43,11 +43,11 @@ vec3 filtered_opacity(uint voxel) { return unpack_half4(sided[voxel * BRICK_STAC
 
 vec3 opacity_of_voxel(uint brick, uint voxel) {
 #if VOXEL_KIND == LEAF_VOXELS
-    return vec3(leaf_opacity(leaf_slot(brick) * BRICK_VOXELS + voxel));
+    return leaf_opacities(leaf_slot(brick) * BRICK_VOXELS + voxel);
 #elif VOXEL_KIND == FILTERED_VOXELS
     return filtered_opacity(brick * BRICK_VOXELS + voxel);
 #else
-    if ((bricks[brick].cell & BRICK_LEAF) != 0u) return vec3(leaf_opacity(leaf_slot(brick) * BRICK_VOXELS + voxel));
+    if ((bricks[brick].cell & BRICK_LEAF) != 0u) return leaf_opacities(leaf_slot(brick) * BRICK_VOXELS + voxel);
     return filtered_opacity(brick * BRICK_VOXELS + voxel);
 #endif
 }

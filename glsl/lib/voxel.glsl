@@ -20,8 +20,17 @@ struct Sides {
 vec4 unpack_half4(uvec2 code) { return vec4(unpackHalf2x16(code.x), unpackHalf2x16(code.y)); }
 uvec2 pack_half4(vec4 v) { return uvec2(packHalf2x16(v.xy), packHalf2x16(v.zw)); }
 
-// A leaf's opacity is its material's, and the same along all axes.
+// A leaf's opacity is its material's, along those axes along which its lattice line meets a surface.
 float leaf_opacity(uint voxel) { return unpackUnorm4x8(attributes[voxel].albedo).a; }
+
+// Bits of the sides that lattice lines meet: +x -x +y -y +z -z.
+uint leaf_sides_met(uint voxel) { return attributes[voxel].normal >> SIDES_MET_SHIFT; }
+
+vec3 leaf_opacities(uint voxel) {
+    uint met = leaf_sides_met(voxel);
+    uint either = met | met >> 1;
+    return leaf_opacity(voxel) * vec3(uvec3(either, either >> 2, either >> 4) & 1u);
+}
 
 // Premultiplied radiance and opacity.
 vec4 leaf_value(uint voxel) {
@@ -31,13 +40,11 @@ vec4 leaf_value(uint voxel) {
 
 Sides leaf_sides(uint voxel) {
     vec4 value = leaf_value(voxel);
-    vec3 normal = unpackSnorm4x8(attributes[voxel].normal).xyz;
-    float squared = dot(normal, normal);
-    vec3 cosine = normal * inversesqrt(max(squared, 1e-6));
+    uint met = leaf_sides_met(voxel);
     Sides s;
-    for (int axis = 0; axis < 3; ++axis) {
-        s.plus[axis] = value * front_share(squared, cosine[axis]);
-        s.minus[axis] = value * front_share(squared, -cosine[axis]);
+    for (uint axis = 0u; axis < 3u; ++axis) {
+        s.plus[axis] = value * float(met >> (2u * axis) & 1u);
+        s.minus[axis] = value * float(met >> (2u * axis + 1u) & 1u);
     }
     return s;
 }

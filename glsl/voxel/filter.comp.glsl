@@ -14,29 +14,16 @@
 
 layout(local_size_x = 64) in;
 
-// The opacities of the 27 points, where they hold anything: a leaf's is the same along all axes; else
-// half floats.
-#if VOXEL_KIND == LEAF_VOXELS
-float opacities[27];
-#else
+// The opacities of the 27 points along the axes, where they hold anything: half floats.
 uvec2 opacities[27];
-#endif
 
 void keep_opacity(uint number, vec3 along) {
-#if VOXEL_KIND == LEAF_VOXELS
-    opacities[number] = along.x;
-#else
     opacities[number] = uvec2(packHalf2x16(along.xy), packHalf2x16(along.zz));
-#endif
 }
 
 float kept_opacity(uint number, int axis) {
-#if VOXEL_KIND == LEAF_VOXELS
-    return opacities[number];
-#else
     uvec2 code = opacities[number];
     return axis == 2 ? unpackHalf2x16(code.y).x : unpackHalf2x16(code.x)[axis];
-#endif
 }
 
 // What a point lets through, that is `steps` further along an axis than point i.

@@ -23,6 +23,7 @@ struct Sums {
     uint emitting;
     uvec4 albedo;
     ivec3 normal;
+    uint sides_met;
     uvec3 emitted;
 };
 
@@ -31,6 +32,7 @@ uint add_fragment(inout Sums sums, uint index) {
     VoxelFragment fragment = fragments[index];
     ++sums.count;
     sums.albedo += bytes_of(fragment.albedo);
+    sums.sides_met |= fragment.normal >> SIDES_MET_SHIFT;
     sums.normal += ivec3(round(normal_snorm8_unpack(fragment.normal) * 127.0));
     uvec3 radiance = uvec3(rgb9e5_unpack(fragment.emissive) * u_octree.fixed_point + 0.5);
     sums.emitted += radiance;
@@ -46,7 +48,7 @@ void main() {
     uint item = linear_thread_id();
     if (item >= octree_state.leaf_voxels.threads) return;
     uint voxel = leaf_voxel_of_item(item);
-    Sums sums = Sums(0u, 0u, uvec4(0u), ivec3(0), uvec3(0u));
+    Sums sums = Sums(0u, 0u, uvec4(0u), ivec3(0), 0u, uvec3(0u));
 #if KEPT_FRAGMENTS
     uint moving = head_of_voxel(voxel, MOVING_FRAGMENTS);
     for (uint link = heads[head_of_voxel(voxel, STILL_FRAGMENTS)]; link != 0u;) link = add_fragment(sums, link - 1u);
@@ -61,7 +63,7 @@ void main() {
     VoxelAttributes result;
     result.albedo = packUnorm4x8(vec4(sums.albedo) * (inverse / 255.0));
     result.normal = packSnorm4x8(vec4(vec3(sums.normal) * (inverse / 127.0), 0.0)) & 0x00ffffffu;
-    result.normal |= min(sums.count, 255u) << ATTRIBUTES_COUNT_SHIFT;
+    result.normal |= sums.sides_met << SIDES_MET_SHIFT;
     // Emission is averaged over what emits: a lamp keeps its power where the ceiling that it hangs
     // from shares its voxels.
     float scale = sums.emitting > 0u ? 1.0 / (float(sums.emitting) * u_octree.fixed_point) : 0.0;

@@ -12,10 +12,10 @@ from accuracy.sealed import PHASES, leak
 from elemental.gpu.device import Device
 
 REACHED = {
-    (1.0, "straight"): 0.0035,
-    (1.0, "turned"): 0.01,
+    (1.0, "straight"): 0.0065,
+    (1.0, "turned"): 0.0095,
     (1.0, "diagonal"): 0.007,
-    (2.0, "straight"): 0.001,
+    (2.0, "straight"): 0.0017,
     (2.0, "turned"): 0.003,
     (2.0, "diagonal"): 0.006,
     (4.0, "straight"): 0.001,

@@ -163,11 +163,28 @@ def _run(stage: Stage, body: str, count: int) -> Array:
     return np.asarray(np.rint(values))
 
 
-def fragment_counts(stage: Stage) -> Array:
-    """(S, 8) fragments of each leaf voxel, 255 for more, by slot and voxel."""
+SIDE_BITS = np.arange(6)
+"""Of a leaf's sides +x -x +y -y +z -z (lib/packing.glsl)."""
+
+
+def sides_met(stage: Stage) -> Array:
+    """(S, 8) uint32 bits of the sides that lattice lines meet in each leaf, by slot and voxel."""
     words = stage.octree.attributes.read(layouts().struct("VoxelAttributes"))
     words = words[: stage.counts.leaves * 8]
-    return np.asarray(words["normal"] >> constant("ATTRIBUTES_COUNT_SHIFT")).reshape(-1, 8)
+    return np.asarray(words["normal"] >> constant("SIDES_MET_SHIFT")).reshape(-1, 8)
+
+
+def united_sides(fragments: Array, slots: Array, shape: tuple[int, ...]) -> Array:
+    """The same from the queue: ``slots`` (F,) says the voxel of each fragment, in ``shape``."""
+    met = np.zeros(int(np.prod(shape)), np.uint32)
+    np.bitwise_or.at(met, slots, fragments["normal"] >> constant("SIDES_MET_SHIFT"))
+    return met.reshape(shape)
+
+
+def leaf_covers(stage: Stage) -> tuple[Array, Array]:
+    """(S, 8, 6) 1 where a side is met, (S, 8, 3) where one of an axis is."""
+    sides = (sides_met(stage)[..., None] >> SIDE_BITS & 1).astype(np.float64)
+    return sides, sides.reshape(*sides.shape[:2], 3, 2).max(axis=-1)
 
 
 def rgb9e5_values(words: Array) -> Array:
@@ -215,6 +232,6 @@ def sided_values(stage: Stage, pools: Pools) -> Array:
             )
             values[leaves, :, 2 * axis + k] = got.reshape(-1, 8, 4)
     values[leaves, :, 6] = 0.0
-    opacity = leaf_values(stage)[0][leaves - first, :, 3:]
+    opacity = (leaf_values(stage)[0][..., 3:] * leaf_covers(stage)[1])[leaves - first]
     values[leaves, :, 6, :3] = opacity
     return values

@@ -20,11 +20,12 @@ from gpu.voxel.digest import contents
 from gpu.voxel.pools import (
     ABSENT,
     Pools,
-    fragment_counts,
     leaf_values,
     read_leaves,
     read_sided,
     sided_values,
+    sides_met,
+    united_sides,
 )
 from gpu.voxel.scenes import grid_with, jumble
 from gpu.voxel.stage import MakeStage, Stage
@@ -153,11 +154,11 @@ def test_pools_are_addressed_by_the_node(jumbled: Stage) -> None:
     pools, counts = Pools.read(jumbled), jumbled.counts
     leaves = np.flatnonzero(pools.level == jumbled.own_grid.leaf_level)
     assert counts.leaves == len(leaves)
-    held = fragment_counts(jumbled)
+    held = sides_met(jumbled)
     points = jumbled.fragment_points + jumbled.own_grid.resolution // 2
     brick = pools.brick_at(points >> 1, jumbled.own_grid.leaf_level)
     slot, voxel = brick - leaves[0], (points & 1) @ BITS
-    wanted = np.bincount(slot * 8 + voxel, minlength=held.size).reshape(held.shape)
+    wanted = united_sides(jumbled.fragments, slot * 8 + voxel, held.shape)
     np.testing.assert_array_equal(held, wanted)
     radiance, _ = leaf_values(jumbled)
     np.testing.assert_array_equal(radiance[..., 3] > 0, held > 0)

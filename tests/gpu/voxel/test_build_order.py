@@ -21,7 +21,7 @@ from elemental.passes.voxel.grid import Grid
 from elemental.scene.model import Scene
 from gpu.rig import at, scene, vector
 from gpu.voxel.digest import contents, digest
-from gpu.voxel.pools import Pools, fragment_counts, rgb9e5_values
+from gpu.voxel.pools import Pools, rgb9e5_values, sides_met, united_sides
 from gpu.voxel.scenes import colored, glowing, jumble, part
 from gpu.voxel.stage import MakeStage, Stage
 from shapes import quad
@@ -108,7 +108,8 @@ def lamp_on_a_ceiling() -> Scene:
 def test_attributes_average_all_fragments_of_a_voxel(
     stage: MakeStage, world: Callable[[], Scene]
 ) -> None:
-    """Albedo, opacity and normal over all; emitted light over the fragments that emit."""
+    """Albedo, opacity and normal over all; emitted light over the fragments that emit;
+    the sides of all."""
     jumbled = stage(world(), grid=Grid.fit((vector(-1, -1, -1), vector(1, 1, 1)), 64))
     fragments, pools, grid = jumbled.fragments, Pools.read(jumbled), jumbled.own_grid
     points = jumbled.fragment_points + grid.resolution // 2
@@ -117,7 +118,9 @@ def test_attributes_average_all_fragments_of_a_voxel(
     slots = (brick - first) * 8 + (points & 1) @ np.array([1, 2, 4])
     struct = layouts().struct("VoxelAttributes")
     held = jumbled.octree.attributes.read(struct, jumbled.counts.leaves * 8)[np.unique(slots)]
-    assert fragment_counts(jumbled).max() >= 2
+    assert np.bincount(slots).max() >= 2
+    met = sides_met(jumbled)
+    np.testing.assert_array_equal(met, united_sides(fragments, slots, met.shape))
 
     albedo = averages(slots, fragments["albedo"].copy().view(np.uint8).reshape(-1, 4))
     got = held["albedo"].copy().view(np.uint8).reshape(-1, 4)

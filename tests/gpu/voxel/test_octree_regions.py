@@ -18,7 +18,7 @@ from elemental.passes.voxel.grid import REGION_SIDE, Grid
 from elemental.scene.model import Region
 from gpu.rig import at, scene, sun, vector
 from gpu.voxel.numpy_octree import leaf_points
-from gpu.voxel.pools import ABSENT, Pools, fragment_counts
+from gpu.voxel.pools import ABSENT, Pools, sides_met, united_sides
 from gpu.voxel.probe import look_up
 from gpu.voxel.scenes import grid_with, jumble, part, turned
 from gpu.voxel.stage import MakeStage, Stage
@@ -81,9 +81,8 @@ def test_leaves_of_a_patchwork_are_of_their_regions_level(patchwork: Stage) -> N
 
 
 def test_every_fragment_lands_in_a_leaf(patchwork: Stage) -> None:
-    """The attributes of all levels together count each once."""
-    counts = fragment_counts(patchwork).ravel()
-    assert counts.sum() == len(patchwork.fragments)
+    """A leaf's sides are those of all its fragments, on each level."""
+    met = sides_met(patchwork)
     levels, points = leaf_points(patchwork.own_grid, patchwork.fragment_points)
     pools = Pools.read(patchwork)
     first = patchwork.state["level_first"][patchwork.own_grid.coarsest_leaf]
@@ -92,8 +91,10 @@ def test_every_fragment_lands_in_a_leaf(patchwork: Stage) -> None:
         brick = pools.brick_at(here >> 1, level)
         assert (brick != ABSENT).all()
         slots = (brick - first) * 8 + (here & 1) @ [1, 2, 4]
-        wanted = np.bincount(slots, minlength=len(counts))
-        np.testing.assert_array_equal(counts[np.unique(slots)], wanted[np.unique(slots)])
+        wanted = united_sides(patchwork.fragments[levels == level], slots, met.shape)
+        np.testing.assert_array_equal(met[wanted > 0], wanted[wanted > 0])
+        met[wanted > 0] = 0
+    assert not met.any()
 
 
 def test_a_uniform_surface_crosses_a_change_of_level_unbroken(stage: MakeStage) -> None:

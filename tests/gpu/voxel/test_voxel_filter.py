@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from gpu.voxel.pools import ABSENT, Pools, leaf_values
+from gpu.voxel.pools import ABSENT, Pools, leaf_covers, leaf_values
 from gpu.voxel.stage import Stage
 
 Array = npt.NDArray[Any]
@@ -19,15 +19,8 @@ TENT = np.array([0.25, 0.5, 0.25])
 
 def leaf_sides(stage: Stage) -> Array:
     """(S, 8, 7, 4) what the sides of leaf voxels show, and their opacities along the axes."""
-    radiance, normal = leaf_values(stage)
-    squared = (normal**2).sum(axis=-1)[..., None]
-    cosine = normal / np.sqrt(np.maximum(squared, 1e-6))
-    cosines = np.stack([cosine, -cosine], axis=-1).reshape(*cosine.shape[:2], 6)
-    certainty = np.minimum(4 * squared, 1)
-    covered = 1 + certainty * (np.maximum(cosines, 0) - 1)
-    sides = radiance[:, :, None] * covered[..., None]
-    opacity = np.repeat(radiance[..., 3:], 3, axis=-1)
-    return with_opacity(sides, opacity)
+    radiance, (sides, axes) = leaf_values(stage)[0], leaf_covers(stage)
+    return with_opacity(radiance[:, :, None] * sides[..., None], radiance[..., 3:] * axes)
 
 
 def with_opacity(sides: Array, opacity: Array) -> Array:
