@@ -33,7 +33,7 @@ TABLE = (
         source="[Mittring12]",
     ),
     Setting(
-        # 9: the talk's. 36 that pixels share cost as much, without its clouds (docs/gi.md).
+        # 9: the talk's. 36 that pixels share cost 1.3 times as much, without clouds (docs/gi.md).
         "gi.diffuse_cones", "choice", 36,
         "cones over the sphere that gather diffuse light; more cost more and err less",
         unit="cones", choices=(9, 36, 63), source="[Mittring12] [Segovia06]",
