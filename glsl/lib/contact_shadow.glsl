@@ -11,7 +11,7 @@ uniform sampler2DArray u_shadow_depths;
 // Of a depth's change over a texel: how far four texels may stray from a plane.
 const float PLANE_TWIST = 0.25;
 // Tangent of a plane's angle to the light at most; what is steeper is a step between two surfaces.
-const float STEEPEST = 4.0;
+const float STEEPEST = 6.0;
 // Of a depth's change over a texel: so near to a plane a point counts as behind it. Where sheets meet
 // both have the same depth but for its rounding.
 const float ROUNDING = 0.05;

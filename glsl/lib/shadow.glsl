@@ -73,7 +73,7 @@ float view_visibility(uint view, vec3 p_ws, vec3 n_ws, vec3 to_light, float offs
     float lit = shadow_tent_3x3(view, coordinate.xy, depth);
 #if CONTACT_SHADOWS
     if (lit > 0.0 && lit < 1.0) {
-        float touching = contact_visibility(view, coordinate.xy, coordinate.xy - own_uv, depth, abs(p.w));
+        float touching = contact_visibility(view, coordinate.xy, coordinate.xy - own_uv, coordinate.z, abs(p.w));
         if (touching != NO_CONTACT) return touching;
     }
 #endif

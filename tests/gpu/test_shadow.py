@@ -144,8 +144,11 @@ def test_a_box_s_shadow_starts_at_its_foot(rig: MakeRig, in_view: bool) -> None:
     assert got.max() == 0.0
 
 
+@pytest.mark.parametrize("kind", LIGHTS)
 @pytest.mark.parametrize("contact", [False, True])
-def test_no_light_falls_through_the_joint_of_two_sheets(rig: MakeRig, contact: bool) -> None:
+def test_no_light_falls_through_the_joint_of_two_sheets(
+    rig: MakeRig, contact: bool, kind: str
+) -> None:
     """Behind a sheet that stands on a floor all is dark, before it all is lit, up to the joint.
 
     Filtering alone leaves a line of either within its radius.
@@ -155,7 +158,7 @@ def test_no_light_falls_through_the_joint_of_two_sheets(rig: MakeRig, contact: b
         (mesh(quad(4.0)), IDENTITY),
         (mesh(quad(1.0)), upright),
         materials=[material(double_sided=True)],
-        lights=[sun(SLANTED)],
+        lights=[LIGHTS[kind][0]],
     )
     view = rig(world, HIGH, shadow_settings=ShadowSettings(1024))
     texel = 4.5 / 1024
@@ -176,10 +179,10 @@ def test_no_light_falls_through_the_joint_of_two_sheets(rig: MakeRig, contact: b
 
     if contact:
         assert seen(behind).max() == 0.0
-        assert seen(before).min() >= 0.9
+        assert seen(before).min() >= 0.8
     else:
         assert seen(behind).max() > 0.2
-        assert seen(before).min() < 0.8
+        assert seen(before).min() < 0.7
 
 
 def test_masked_holes_let_light_through(rig: MakeRig) -> None:
