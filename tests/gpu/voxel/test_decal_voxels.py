@@ -129,6 +129,13 @@ def test_a_decal_of_normals_alone_leaves_voxels_alone(queue_of: Any) -> None:
     assert len(np.unique(emissive)) == 1
 
 
+def test_only_emission_that_decals_bring_takes_a_share_of_its_range() -> None:
+    """Else lamps are stored in steps of what is never there."""
+    neon = material(emissive=vector(0.0, 900.0, 0.0))
+    for channels, most in ((("color",), 0.0), (("color", "emission"), 900.0)):
+        assert sizing.max_emission(floor(placed(channels=channels), more=(neon,))) == most
+
+
 def test_a_glowing_decal_lights_what_is_near(device: Device) -> None:
     """A rune on a black floor, as wide as its cousin in geometry, lights a wall alike."""
     glow = material(base_color=vector(0, 0, 0, 1), emissive=vector(0.0, 4.0, 0.0))

@@ -62,7 +62,8 @@ def max_emission(scene: Scene, area_lights: Sequence[AreaLight] = ()) -> float:
     elsewhere = {light.instance for light in area_lights}
     used = {i.mesh for n, i in enumerate(scene.instances) if n not in elsewhere}
     materials = [scene.materials[scene.meshes[mesh].material] for mesh in used]
-    materials += [scene.materials[decal.material] for decal in scene.decals]
+    glowing = [decal for decal in scene.decals if "emission" in decal.channels]
+    materials += [scene.materials[decal.material] for decal in glowing]
     return max([0.0, *(material.emission_max for material in materials)])
 
 
