@@ -133,6 +133,19 @@ def test_a_bad_file_is_told_and_changes_nothing(
     assert not robot.sees(f"problem {ROW}")
 
 
+def test_whatever_reading_raises_is_told(
+    hands: Hands, scene_file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(path: Path) -> Texture:
+        raise RuntimeError("can't start new thread")
+
+    monkeypatch.setattr(images, "read_texture", broken)
+    robot = hands(scene_file, page="Materials", size=SIZE)
+    enter(robot, "blue.png")
+    assert robot.sees(f"problem {ROW}")
+    assert "blue.png: can't be read (can't start new thread)" in robot.desk.log.entries[-1].text
+
+
 def test_frames_go_on_while_a_file_is_read(
     hands: Hands, scene_file: Path, blue: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -44,8 +44,12 @@ class ImageReader:
     def _read(self, path: Path) -> Texture:
         try:
             texture = read_texture(path)
+        except InputError:
+            raise
         except MemoryError as error:
             raise InputError(path, "", "is larger than this machine's memory") from error
+        except Exception as error:  # no frame may end for a file that an artist chose
+            raise InputError(path, "", f"can't be read ({error})") from error
         height, width = texture.pixels.shape[:2]
         if max(width, height) > self.largest_px:
             reason = f"is {width}x{height}; this driver takes {self.largest_px} pixels a side"
