@@ -84,11 +84,11 @@ def read_environment(path: Path) -> npt.NDArray[np.float32]:
     return np.maximum(radiance, 0.0)
 
 
-def check_side(path: Path, shape: tuple[int, ...]) -> None:
+def check_side(name: str | Path, shape: tuple[int, ...]) -> None:
     """Raises InputError for an image (H, W, ...) that is larger than textures can be."""
     if max(shape[:2]) > LARGEST_SIDE:
         reason = f"is {shape[1]} x {shape[0]} pixels, at most {LARGEST_SIDE} a side"
-        raise InputError(path, "", reason)
+        raise InputError(name, "", reason)
 
 
 def read_exr(path: Path) -> npt.NDArray[np.float32]:

@@ -8,7 +8,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 from elemental.core.errors import InputError, named_by
-from elemental.core.images import read_png_jpeg_webp
+from elemental.core.images import check_side, read_png_jpeg_webp
 from elemental.scene.definitions import SHARED, MaterialDefinition, find_definition
 from elemental.scene.materials import Material, Texture
 from elemental.scene.model import Scene
@@ -96,4 +96,6 @@ def _image(scene: Scene, name: str, field: str, images: dict[Path, int]) -> int:
 
 def read_texture(path: Path) -> Texture:
     """An image file as a texture that repeats. Raises InputError."""
-    return Texture(path.stem, read_png_jpeg_webp(path), file=path)
+    pixels = read_png_jpeg_webp(path)
+    check_side(path, pixels.shape)
+    return Texture(path.stem, pixels, file=path)

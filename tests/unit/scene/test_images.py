@@ -26,6 +26,7 @@ from elemental.core.images import (
     write_png,
 )
 from elemental.core.rgbe import decode_rgbe, encode_rgbe
+from gltf_builder import GltfBuilder
 
 RNG = np.random.default_rng(7)
 RGB8 = RNG.integers(0, 256, (5, 9, 3)).astype(np.uint8)
@@ -238,6 +239,12 @@ def test_images_larger_than_textures_can_be_are_refused(tmp_path: Path) -> None:
         read_mask(tmp_path / "a.png")
     with pytest.raises(InputError, match=rf"a\.exr: {reason}"):
         read_environment(tmp_path / "a.exr")
+    builder = GltfBuilder()
+    texture = builder.texture(wide)
+    builder.material(pbr={"baseColorTexture": {"index": texture}})
+    builder.add(np.eye(3, dtype=np.float32), material=0)
+    with pytest.raises(InputError, match=rf"scene\.glb: images\[0\]: image0: {reason}"):
+        builder.load(tmp_path)
 
 
 def test_a_read_only_file_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,6 +9,7 @@ import pytest
 
 from cli.process import assert_refused, elemental
 from cli.small_scene import write_corner
+from elemental.core.errors import InputError
 from elemental.core.images import write_png
 from elemental.scene.load import load_scene
 from elemental.scene.materials import Material, TextureSlot
@@ -91,6 +92,14 @@ def test_an_image_lies_as_the_one_that_it_replaces() -> None:
     assert before.with_image("base_color_texture", 5).base_color_texture == TextureSlot(
         5, 0, pytest.approx(np.eye(2, 3))
     )
+
+
+def test_an_image_that_no_texture_holds_is_told_with_its_field(tmp_path: Path) -> None:
+    path = write(tmp_path, '[[materials]]\nname = "*"\nparameters.base_color_texture = "wide.png"')
+    write_png(tmp_path / "wide.png", np.zeros((1, 16385, 3), np.uint8))
+    field = r"scene\.toml: materials\[0\]\.parameters\.base_color_texture"
+    with pytest.raises(InputError, match=rf"{field}: wide\.png: is 16385 x 1 pixels"):
+        load_scene(path, default_lights=False)
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from urllib.parse import unquote
 import numpy as np
 
 from elemental.core.errors import InputError
-from elemental.core.images import read_png_jpeg_webp
+from elemental.core.images import check_side, read_png_jpeg_webp
 from elemental.scene.gltf.container import Document
 from elemental.scene.gltf.fields import Field, printable
 from elemental.scene.model import ByteArray, FloatArray, Texture, TextureSlot, Wrap
@@ -112,7 +112,9 @@ class Textures:
 
     def _decode_now(self, field: Field, encoded: bytes, name: str) -> ByteArray:
         try:
-            return read_png_jpeg_webp(encoded, name)
+            pixels = read_png_jpeg_webp(encoded, name)
+            check_side(name, pixels.shape)
+            return pixels
         except InputError as error:
             raise field.error(str(error)) from error
 
