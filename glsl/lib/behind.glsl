@@ -12,6 +12,17 @@ const float BEHIND_LEAST_SLOPE = -0.3;  // cosine between the ray and the view; 
 const float BEHIND_GUESS = 0.5;       // how far such a guess is trusted; voxels say the rest
 const float BEHIND_GAP = 0.03;        // share of its depth that a ray may be behind what it met
 
+// 1 / distance from the eye's plane of what is drawn at a place of the picture. Of one pixel at a
+// silhouette, where a mean would be a surface that is not there.
+float inverse_depth_behind(vec2 uv) {
+    vec4 around = textureGather(u_behind, uv, 3);
+    float most = max(max(around.x, around.y), max(around.z, around.w));
+    float least = min(min(around.x, around.y), min(around.z, around.w));
+    if (most - least <= BEHIND_GAP * most) return textureLod(u_behind, uv, 0.0).a;
+    ivec2 size = textureSize(u_behind, 0);
+    return texelFetch(u_behind, clamp(ivec2(uv * vec2(size)), ivec2(0), size - 1), 0).a;
+}
+
 // A point's place in the picture and 1 / its distance from the eye's plane: linear along a ray's
 // picture, both.
 vec3 place_in_picture(vec3 p_ws) {
@@ -31,7 +42,7 @@ float end_in_picture(vec2 from, vec2 to) {
 // Whether a ray at a place of the picture has met the surface there: it is behind it, by no more than a
 // share `gap` of its depth and `step_m`. Farther behind it passes behind something.
 bool meets_picture(vec3 place, float gap, float step_m) {
-    float inverse = textureLod(u_behind, place.xy, 0.0).a;
+    float inverse = inverse_depth_behind(place.xy);
     if (inverse < place.z) return false;
     return 1.0 / place.z - 1.0 / inverse <= gap / place.z + step_m;
 }
@@ -65,7 +76,7 @@ vec4 radiance_behind(vec3 origin, vec3 direction, float half_angle) {
         at = share * float(i);
         met = mix(start, end, at);
         met_it = meets_picture(met, gap, abs(1.0 / met.z - 1.0 / before.z));
-        bool in_sight = textureLod(u_behind, met.xy, 0.0).a < met.z;
+        bool in_sight = inverse_depth_behind(met.xy) < met.z;
         hides = hides || !in_sight;
         if (in_sight && !hides) seen = met.xy;
     }
