@@ -29,15 +29,20 @@ float transmitted_visibility(uint light, vec3 p_ws, vec3 to_light) {
     return lit;
 }
 
+// How wide a pixel is where it shows a point, m.
+float pixel_width_m(vec3 p_ws) {
+    return 2.0 * view_ray().y * u_view.viewport_px.w * distance(u_view.eye_ws, p_ws);
+}
+
 float largest(vec3 v) { return max(v.r, max(v.g, v.b)); }
 
 DirectLight direct_light(ShadingPoint p) {
     DirectLight sum = DirectLight(vec3(0.0), vec3(0.0));
-    light_footprint_m = 2.0 * view_ray().y * u_view.viewport_px.w * distance(u_view.eye_ws, p.p_ws);
+    float footprint_m = pixel_width_m(p.p_ws);
     bool shines_through = SUBSURFACE_IS_USED && largest(p.subsurface_color) > 0.0;
     for (LightWalk walk = first_light(p.p_ws); walk.light < light_count(); next_light(walk)) {
         Light light = lights[walk.light];
-        LightSample s = sample_light(light, p.p_ws);
+        LightSample s = sample_light(light, p.p_ws, footprint_m);
         DirectLight reflected = reflect_sample(p, s.to_light, s.irradiance,
             light_area_angle(light.source_radius, s.distance_m));
         if (largest(reflected.diffuse + reflected.specular) > 0.0) {

@@ -6,9 +6,6 @@
 // back. Masks: the share of each primary, as pictures, the first row on top. All repeat.
 uniform sampler2DArray u_light_profiles;
 
-// How wide the place is that light is sampled for, m: masks are seen through their means over it.
-float light_footprint_m = 0.0;
-
 struct LightSample {
     vec3 to_light;     // unit
     float distance_m;  // 1 for a directional light: its source_radius is an angle already
@@ -44,19 +41,20 @@ float profile_falloff(Light light, vec3 to_light) {
     return textureLod(u_light_profiles, vec3(turned, down, float(light.profile)), 0.0).r;
 }
 
-// What a light's mask lets through to a point, which lies `offset` from the light.
-vec3 mask_share(Light light, vec3 offset) {
+// What a light's mask lets through to a point, which lies `offset` from the light: the mean over
+// a place that is `footprint_m` wide.
+vec3 mask_share(Light light, vec3 offset, float footprint_m) {
     vec3 down = cross(light.direction_ws, light.profile_axis_ws);
     vec2 across = vec2(dot(offset, light.profile_axis_ws), dot(offset, down)) * light.mask_scale;
     float texels = float(textureSize(u_light_profiles, 0).x);
     if (light.kind == LIGHT_DIRECTIONAL) {
-        float lod = log2(max(light_footprint_m * light.mask_scale * texels, 1.0));
+        float lod = log2(max(footprint_m * light.mask_scale * texels, 1.0));
         vec2 uv = across + 0.5 - light.mask_offset;
         return textureLod(u_light_profiles, vec3(uv, float(light.mask)), lod).rgb;
     }
     float along = dot(offset, light.direction_ws);
     if (along <= 0.0) return vec3(0.0);
-    float lod = log2(max(0.5 * light_footprint_m * light.mask_scale / along * texels, 1.0));
+    float lod = log2(max(0.5 * footprint_m * light.mask_scale / along * texels, 1.0));
     vec2 uv = across * (0.5 / along) + 0.5;
     if (any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.0);
     float rim = light.mask_offset == vec2(0.0) ? 0.5 * exp2(lod) / texels : 0.0;  // what repeats is not seen
@@ -64,13 +62,14 @@ vec3 mask_share(Light light, vec3 offset) {
     return textureLod(u_light_profiles, vec3(uv, float(light.mask)), lod).rgb;
 }
 
-LightSample sample_light(Light light, vec3 p_ws) {
+// What a light sends to a place that is `footprint_m` wide.
+LightSample sample_light(Light light, vec3 p_ws, float footprint_m) {
     LightSample s;
     if (light.kind == LIGHT_DIRECTIONAL) {
         s.to_light = -light.direction_ws;
         s.distance_m = 1.0;
         s.irradiance = light.intensity;
-        if (light.mask >= 0) s.irradiance *= mask_share(light, p_ws - light.position_ws);
+        if (light.mask >= 0) s.irradiance *= mask_share(light, p_ws - light.position_ws, footprint_m);
         return s;
     }
     vec3 offset = light.position_ws - p_ws;
@@ -80,6 +79,6 @@ LightSample sample_light(Light light, vec3 p_ws) {
     if (light.kind == LIGHT_SPOT) falloff *= spot_falloff(light, s.to_light);
     if (light.profile >= 0) falloff *= profile_falloff(light, s.to_light);
     s.irradiance = light.intensity * falloff;
-    if (light.mask >= 0) s.irradiance *= mask_share(light, -offset);
+    if (light.mask >= 0) s.irradiance *= mask_share(light, -offset, footprint_m);
     return s;
 }

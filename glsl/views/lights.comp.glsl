@@ -20,8 +20,9 @@ layout(rgba16f) writeonly uniform image2D o_image;
 vec3 visibility(ShadingPoint point) {
     vec3 arriving = vec3(0.0);
     vec3 unshadowed = vec3(0.0);
+    float footprint_m = pixel_width_m(point.p_ws);
     for (LightWalk walk = first_light(point.p_ws); walk.light < light_count(); next_light(walk)) {
-        LightSample s = sample_light(lights[walk.light], point.p_ws);
+        LightSample s = sample_light(lights[walk.light], point.p_ws, footprint_m);
         vec3 irradiance = s.irradiance * max(dot(point.n_ws, s.to_light), 0.0);
         if (max(irradiance.r, max(irradiance.g, irradiance.b)) <= 0.0) continue;
         unshadowed += irradiance;

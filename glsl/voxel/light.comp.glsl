@@ -36,7 +36,7 @@ const float NEAREST_LIGHT_VOXELS = 0.5;
 vec3 direct_irradiance(vec3 p_ws, vec3 normal, float certainty, float spacing) {
     vec3 sum = vec3(0.0);
     for (LightWalk walk = first_light(p_ws); walk.light < light_count(); next_light(walk)) {
-        LightSample light = sample_light(lights[walk.light], p_ws);
+        LightSample light = sample_light(lights[walk.light], p_ws, spacing);
         float cosine = mix(MEAN_COSINE, max(dot(normal, light.to_light), 0.0), certainty);
         if (cosine * max(light.irradiance.r, max(light.irradiance.g, light.irradiance.b)) <= 0.0) continue;
         float visibility = light_visibility(walk.light, p_ws, normal, spacing * SHADOW_OFFSET_VOXELS);
@@ -64,7 +64,6 @@ void main() {
     float squared = dot(mean_normal, mean_normal);
     vec3 normal = mean_normal * inversesqrt(max(squared, 1e-6));
     float certainty = normal_certainty(squared);
-    light_footprint_m = spacing;
     vec4 albedo = unpackUnorm4x8(voxel.albedo);
     vec3 incident = direct_irradiance(p_ws, normal, certainty, spacing) * INVERSE_PI;
 #if SPREAD

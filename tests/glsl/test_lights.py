@@ -34,7 +34,7 @@ def irradiance(device: Device, source: Light, points: np.ndarray) -> np.ndarray:
     lights = device.buffer("lights", packed)
     profiles = LightProfiles(device)
     profiles.update(profiles_of([source]))
-    body, reads = "sample_light(lights[0], p).irradiance", {"Lights": lights, **profiles.reads()}
+    body, reads = "sample_light(lights[0], p, 0.0).irradiance", {"Lights": lights, **profiles.reads()}
     values = run_glsl(device, ["lib/lights.glsl"], body, {"p": points}, "vec3", reads=reads)
     profiles.release()
     lights.release()
@@ -130,7 +130,7 @@ def test_a_wide_place_sees_the_masks_mean(device: Device) -> None:
     points = np.random.default_rng(5).normal(size=(32, 3))
     got = run_glsl(
         device, ["lib/lights.glsl"],
-        "(light_footprint_m = 0.01, sample_light(lights[0], p).irradiance)",
+        "sample_light(lights[0], p, 0.01).irradiance",
         {"p": points}, "vec3", reads={"Lights": packed, **profiles.reads()},
     )  # fmt: skip
     np.testing.assert_allclose(got, np.tile([8.0, 4.0, 2.0] * mask.pixels.mean((0, 1)), (32, 1)),
