@@ -34,7 +34,10 @@ def irradiance(device: Device, source: Light, points: np.ndarray) -> np.ndarray:
     lights = device.buffer("lights", packed)
     profiles = LightProfiles(device)
     profiles.update(profiles_of([source]))
-    body, reads = "sample_light(lights[0], p, 0.0).irradiance", {"Lights": lights, **profiles.reads()}
+    body, reads = (
+        "sample_light(lights[0], p, 0.0).irradiance",
+        {"Lights": lights, **profiles.reads()},
+    )
     values = run_glsl(device, ["lib/lights.glsl"], body, {"p": points}, "vec3", reads=reads)
     profiles.release()
     lights.release()
