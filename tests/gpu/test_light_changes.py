@@ -15,6 +15,7 @@ from elemental.scene.blackbody import blackbody_color
 from elemental.scene.ies import LightProfile
 from elemental.scene.lights import LightMask
 from elemental.scene.model import Light, Scene
+from elemental.scene.volumes import Volume
 from gpu.rig import IDENTITY, at, camera, mesh, scene, vector
 from shapes import box, quad
 
@@ -77,6 +78,20 @@ def test_lights_end_by_the_exposure_of_now(renderers: Any) -> None:
     assert "light voxels" not in passes
 
 
+def test_lights_end_by_the_brightest_exposure_of_any_volume(renderers: Any) -> None:
+    """Wherever the eye is, so that a walk into it lights no voxels anew."""
+    world = court()
+    world.lights = [replace(world.lights[0], name=f"lamp {n}") for n in range(6)]
+    far = Volume("cellar", center=(1e3, 0, 0), overrides={"exposure": 5.0})
+    made = renderers(world, exposure=-7.5)
+    dark, _ = picture(made)
+    want, _ = picture(renderers(world, exposure=5.0))
+    for volume, seen in ((far, want), (replace(far, enabled=False), dark)):
+        world.volumes = [volume]
+        np.testing.assert_array_equal(picture(made)[0], seen)
+    assert np.abs(want - dark).max() > 0.05
+
+
 @pytest.mark.parametrize("change", CHANGES)
 def test_an_edited_light_lights_the_next_frame(renderers: Any, change: str) -> None:
     """As in a scene that began with it; nothing is voxelized anew."""
@@ -125,8 +140,9 @@ def test_a_mask_that_scrolls_is_elsewhere_and_lights_voxels_anew(renderers: Any)
     for frame, time_s in enumerate((0.0, 2.0, 2.0, 4.0)):
         shown = made.render(EYE, time_s, frame, "scene_color")
         made.device.finish()
-        relit = "light voxels" in [timing.name for timing in made.device.timings]
-        assert relit is (frame != 2)
+        passes = [timing.name for timing in made.device.timings]
+        assert ("light voxels" in passes) is (frame != 2)
+        assert any(name.startswith("shadow.") for name in passes) is (frame == 0)  # maps stay
         seen.append(made.read(shown)[..., :3])
     assert np.abs(seen[1] - seen[0]).max() > 0.05
     np.testing.assert_array_equal(seen[2], seen[1])

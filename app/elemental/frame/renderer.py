@@ -34,7 +34,7 @@ from elemental.scene.evaluate import LastPose, Pose
 from elemental.scene.light_masks import MaskDrift
 from elemental.scene.lights import checked
 from elemental.scene.model import Camera, Light, Material, Region, Scene
-from elemental.scene.volumes import blend
+from elemental.scene.volumes import Volume, blend
 from elemental.settings import Settings
 
 MIB = 1 << 20
@@ -89,7 +89,7 @@ class Renderer:
         self._post = PostHistory(device, settings, scene.folder)
         self._meshes = GpuScene(device, scene, self._area_lights.lights)
         self._decals = Decals(device, scene, self._meshes)
-        self._shadows = ShadowMaps(device, _shadow_settings(settings))
+        self._shadows = ShadowMaps(device, _shadow_settings(settings, scene.volumes))
         self._sky = Sky(device)
         self._voxels: VoxelLighting | None = None
         self._specular = SpecularCounters()
@@ -126,9 +126,9 @@ class Renderer:
         changed = {key for key in settings if settings[key] != before[key]}
         if changed & SHADOW_KEYS:
             self._shadows.release()
-            self._shadows = ShadowMaps(self.device, _shadow_settings(settings))
+            volumes = self.scene.volumes
+            self._shadows = ShadowMaps(self.device, _shadow_settings(settings, volumes))
             self.invalidate("light")
-        self._shadows.planner.set_cutoff(_cutoff(settings))
         if "gi.area_lights" in changed:
             self._update_area_lights()
         if changed & OCTREE_KEYS:
@@ -187,6 +187,7 @@ class Renderer:
         for what they were while they are the same objects: replace them, don't edit them.
         """
         lights = self._move(time_s, pose)
+        self._shadows.planner.set_cutoff(_cutoff(self.settings, self.scene.volumes))
         systems = self._systems(view, time_s)
         request = Request(
             camera=camera,
@@ -283,7 +284,7 @@ def max_pixels(device: Device) -> int:
     return device.storage_limit // 4
 
 
-def _shadow_settings(settings: Settings) -> ShadowSettings:
+def _shadow_settings(settings: Settings, volumes: Sequence[Volume]) -> ShadowSettings:
     return ShadowSettings(
         resolution=settings["shadow.resolution"],
         cascades=settings["shadow.cascades"],
@@ -291,11 +292,14 @@ def _shadow_settings(settings: Settings) -> ShadowSettings:
         budget=settings["shadow.budget"],
         penumbras=settings["shadow.penumbras"],
         culling=settings["lights.culling"],
-        cutoff=_cutoff(settings),
+        cutoff=_cutoff(settings, volumes),
     )
 
 
-def _cutoff(settings: Settings) -> float:
+def _cutoff(settings: Settings, volumes: Sequence[Volume]) -> float:
     """Irradiance, lux, at which lights without a range end: darker where the picture is developed
-    brighter. In whole stops, since voxels are lit anew for each change."""
-    return float(settings["lights.cutoff"] / 2.0 ** math.ceil(settings["exposure"]))
+    brighter. Of the brightest that any place sees, and in whole stops, since voxels are lit anew
+    for each change."""
+    exposures = [v.overrides["exposure"] for v in volumes if v.acts and "exposure" in v.overrides]
+    brightest = max([settings["exposure"], *exposures])
+    return float(settings["lights.cutoff"] / 2.0 ** math.ceil(brightest))

@@ -51,6 +51,11 @@ class Volume:
     unbound: bool = False
     overrides: Mapping[str, Any] = field(default_factory=dict)
 
+    @property
+    def acts(self) -> bool:
+        """Whether any eye sees its values."""
+        return self.enabled and self.blend_weight > 0.0
+
     @cached_property
     def _axes(self) -> tuple[tuple[float, Vector], ...]:
         """(half of the size, direction in the world) of each axis."""
@@ -73,7 +78,7 @@ class Volume:
 
     def weight(self, eye_ws: Vector) -> float:
         """Share of the volume's values, 0 to 1, as seen from an eye."""
-        if not self.enabled or self.blend_weight <= 0.0:
+        if not self.acts:
             return 0.0
         if self.unbound:
             return self.blend_weight
