@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from elemental.core.errors import InputError
 from elemental.core.images import check_png, read_exr, write_exr, write_png
+from elemental.core.srgb import decode_srgb, encode_srgb
 
 SUFFIXES = (".png", ".exr")
 
@@ -42,20 +43,6 @@ def is_picture(path: Path, size: tuple[int, int]) -> bool:
         return check_png(path) == size
     except InputError:
         return False
-
-
-def encode_srgb(linear: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
-    """sRGB display values of linear light in [0, 1], any shape [IEC 61966-2-1]."""
-    toe = linear * np.float32(12.92)
-    curve = np.float32(1.055) * linear ** np.float32(1 / 2.4) - np.float32(0.055)
-    return np.where(linear <= np.float32(0.0031308), toe, curve)
-
-
-def decode_srgb(display: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
-    """Linear light of sRGB display values in [0, 1], any shape [IEC 61966-2-1]."""
-    toe = display / np.float32(12.92)
-    curve = ((display + np.float32(0.055)) / np.float32(1.055)) ** np.float32(2.4)
-    return np.where(display <= np.float32(0.04045), toe, curve)
 
 
 def _unit(rgb: npt.NDArray[Any]) -> npt.NDArray[np.float32]:

@@ -14,7 +14,7 @@ from cli.process import elemental
 from cli.schema import mismatches
 from cli.small_scene import corner, write_corner
 from elemental.core.images import read_exr
-from elemental.picture import encode_srgb
+from elemental.core.srgb import encode_srgb
 from elemental.report import Report
 
 SMALL = ("--size", "48x32", "--set", "gi.resolution=64", "--set", "shadow.resolution=256")

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from elemental.core.errors import InputError
 from elemental.core.images import read_exr
-from elemental.picture import decode_srgb, encode_srgb, is_picture, save_picture
+from elemental.core.srgb import decode_srgb, encode_srgb
+from elemental.picture import is_picture, save_picture
 
 RADIANCE = np.array([[[0.0, 0.18, 1.0, 0.5], [2.5, 1e-4, 65504.0, 0.0]]], np.float32)
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from elemental.core.images import read_png_jpeg_webp
+from elemental.core.srgb import decode_srgb
 from elemental.scene.lights import Light, LightMask
 
 
@@ -18,10 +19,7 @@ def read_mask(path: Path) -> LightMask:
     Raises InputError.
     """
     codes = read_png_jpeg_webp(path).astype(np.float32) / np.float32(255.0)
-    encoded = codes[..., :3]
-    low, high = encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4
-    linear = np.where(encoded <= 0.04045, low, high) * codes[..., 3:]
-    return LightMask(path.name, linear.astype(np.float32))
+    return LightMask(path.name, decode_srgb(codes[..., :3]) * codes[..., 3:])
 
 
 @dataclass

@@ -10,7 +10,6 @@ from elemental.scene.tables.lights import LightTable
 
 CONE_KEYS = frozenset({"inner_angle_deg", "outer_angle_deg"})
 MASK_KEYS = frozenset({"mask_size", "mask_scroll"})
-MASK_KEYS = frozenset({"mask_size", "mask_scroll"})
 PLACE_KEYS = frozenset({"position", "range"})
 
 
@@ -31,8 +30,6 @@ def _idle_keys_of(table: LightTable) -> dict[str, str]:
         idle |= dict.fromkeys(sorted(MASK_KEYS), "there is no mask")
     elif table.kind == "spot":
         idle["mask_size"] = "a spot light's mask fills its cone"
-    if table.mask is None:
-        idle |= dict.fromkeys(sorted(MASK_KEYS), "there is no mask")
     if table.kind != "spot":
         idle |= dict.fromkeys(sorted(CONE_KEYS), f"a {table.kind} light has no cone")
     if table.kind == "directional":

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from imgui_bundle import imgui
 
-from elemental.picture import decode_srgb, encode_srgb
+from elemental.core.srgb import decode_srgb, encode_srgb
 from elemental.settings import Setting
 from elemental.ui import icons
 from elemental.ui.lines import Lines

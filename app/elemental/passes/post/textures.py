@@ -13,6 +13,7 @@ from elemental.core.cube_lut import CubeLut, read_cube_lut
 from elemental.core.errors import InputError
 from elemental.core.images import read_mask
 from elemental.core.paths import named_file
+from elemental.core.srgb import decode_srgb
 from elemental.gpu.device import Device
 from elemental.gpu.formats import RGBA16F, SRGB8_A8
 from elemental.gpu.resources import Texture, mip_count
@@ -120,6 +121,5 @@ class PostTextures:
             path.name, (width, height), SRGB8_A8, mips=levels, data=pixels
         )
         texture.generate_mips()
-        codes = pixels[..., :3] / 255.0
-        linear = np.where(codes <= 0.04045, codes / 12.92, ((codes + 0.055) / 1.055) ** 2.4)
-        return Mask(texture, float(linear.mean()))
+        codes = pixels[..., :3].astype(np.float32) / np.float32(255.0)
+        return Mask(texture, float(decode_srgb(codes).mean(dtype=np.float64)))
