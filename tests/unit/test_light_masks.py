@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from elemental.scene.light_masks import read_mask
+from elemental.scene.light_masks import read_light_mask
 from elemental.scene.load import load_scene
 from make_light_masks import files
 
@@ -20,7 +20,7 @@ def test_the_committed_files_are_what_the_tool_makes(tmp_path: Path) -> None:
         made = tmp_path / stored.name
         made.write_bytes(content)
         if name.endswith(".png"):
-            np.testing.assert_allclose(read_mask(made).pixels, read_mask(stored).pixels, atol=0.02)
+            np.testing.assert_allclose(read_light_mask(made).pixels, read_light_mask(stored).pixels, atol=0.02)
         elif name.endswith(".glb"):
             ours, theirs = (load_scene(str(p), default_lights=False) for p in (made, stored))
             points = [np.concatenate([m.positions for m in s.meshes]) for s in (ours, theirs)]
@@ -31,7 +31,7 @@ def test_the_committed_files_are_what_the_tool_makes(tmp_path: Path) -> None:
 
 def test_the_leaves_repeat_without_a_seam() -> None:
     """Neighbours across the rim differ no more than inside."""
-    pixels = read_mask(SCENES / "chapel" / "leaves.png").pixels[..., 0]
+    pixels = read_light_mask(SCENES / "chapel" / "leaves.png").pixels[..., 0]
     for axis in (0, 1):
         inside = np.abs(np.diff(pixels, axis=axis)).mean()
         rim = np.abs(np.take(pixels, 0, axis) - np.take(pixels, -1, axis)).mean()

@@ -41,7 +41,7 @@ def read_png_jpeg_webp(source: bytes | Path, name: str | None = None) -> npt.NDA
         raise InputError(label, "", _unreadable(error, "PNG, JPEG or WebP")) from error
 
 
-def read_mask(path: Path) -> npt.NDArray[np.uint8]:
+def read_lens_texture(path: Path) -> npt.NDArray[np.uint8]:
     """A PNG, JPEG or WebP image (H, W, 4) that becomes a texture as it is. Raises InputError."""
     pixels = read_png_jpeg_webp(path)
     check_side(path, pixels.shape)

@@ -16,7 +16,7 @@ from elemental.scene.gltf import load_gltf
 from elemental.scene.gltf.animations import EVERY
 from elemental.scene.ies import read_ies
 from elemental.scene.light_changes import change_lights
-from elemental.scene.light_masks import read_mask
+from elemental.scene.light_masks import read_light_mask
 from elemental.scene.model import (
     Camera,
     CameraPath,
@@ -256,7 +256,7 @@ def _light(table: LightTable, index: int, path: Path) -> Light:
     mask = None
     if table.mask is not None:
         with named_by(path, f"lights[{index}].mask", table.mask):
-            mask = read_mask(path.parent / table.mask)
+            mask = read_light_mask(path.parent / table.mask)
     away = [0.0, 0.0, -1.0] if profile is None else [0.0, -1.0, 0.0]
     light = Light(
         name=table.name or f"{table.kind}{index}",

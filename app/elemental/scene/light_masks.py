@@ -13,7 +13,7 @@ from elemental.core.srgb import decode_srgb
 from elemental.scene.lights import Light, LightMask
 
 
-def read_mask(path: Path) -> LightMask:
+def read_light_mask(path: Path) -> LightMask:
     """A PNG, JPEG or WebP file; its sRGB colours times its opacity let light through.
 
     Raises InputError.

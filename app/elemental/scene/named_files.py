@@ -10,7 +10,7 @@ from typing import Any
 from elemental.core.cube_lut import read_cube_lut
 from elemental.core.errors import named_by
 from elemental.core.files import check_file
-from elemental.core.images import read_mask
+from elemental.core.images import read_lens_texture
 from elemental.core.paths import named_file
 from elemental.scene.volumes import Volume
 from elemental.settings import SETTINGS
@@ -20,8 +20,8 @@ FILE_KEYS = frozenset(key for key, setting in SETTINGS.items() if setting.unit =
 READERS: Mapping[str, Callable[[Path], object]] = {
     "sky.image": check_file,  # large, and read at once by who opens the scene
     "color_grading.lut": read_cube_lut,
-    "bloom.dirt_mask": read_mask,
-    "lens_flare.bokeh_shape": read_mask,
+    "bloom.dirt_mask": read_lens_texture,
+    "lens_flare.bokeh_shape": read_lens_texture,
 }
 """What reads a setting's file. Raises InputError."""
 

@@ -20,7 +20,7 @@ from elemental.core.files import atomic_file
 from elemental.core.images import (
     read_environment,
     read_exr,
-    read_mask,
+    read_lens_texture,
     read_png_jpeg_webp,
     write_exr,
     write_png,
@@ -236,7 +236,7 @@ def test_images_larger_than_textures_can_be_are_refused(tmp_path: Path) -> None:
     write_exr(tmp_path / "a.exr", wide.astype(np.float32))
     reason = r"is 16385 x 1 pixels, at most 16384 a side"
     with pytest.raises(InputError, match=rf"a\.png: {reason}"):
-        read_mask(tmp_path / "a.png")
+        read_lens_texture(tmp_path / "a.png")
     with pytest.raises(InputError, match=rf"a\.exr: {reason}"):
         read_environment(tmp_path / "a.exr")
     builder = GltfBuilder()

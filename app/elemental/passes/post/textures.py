@@ -11,7 +11,7 @@ import numpy as np
 
 from elemental.core.cube_lut import CubeLut, read_cube_lut
 from elemental.core.errors import InputError
-from elemental.core.images import read_mask
+from elemental.core.images import read_lens_texture
 from elemental.core.paths import named_file
 from elemental.core.srgb import decode_srgb
 from elemental.gpu.device import Device
@@ -114,7 +114,7 @@ class PostTextures:
         return Lut(lut, self._device.texture(path.name, size, RGBA16F, data=texels))
 
     def _load_mask(self, path: Path) -> Mask:
-        pixels = np.ascontiguousarray(np.flipud(read_mask(path)))
+        pixels = np.ascontiguousarray(np.flipud(read_lens_texture(path)))
         height, width = pixels.shape[:2]
         levels = mip_count((width, height))
         texture = self._device.texture(
