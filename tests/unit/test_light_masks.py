@@ -20,7 +20,9 @@ def test_the_committed_files_are_what_the_tool_makes(tmp_path: Path) -> None:
         made = tmp_path / stored.name
         made.write_bytes(content)
         if name.endswith(".png"):
-            np.testing.assert_allclose(read_light_mask(made).pixels, read_light_mask(stored).pixels, atol=0.02)
+            np.testing.assert_allclose(
+                read_light_mask(made).pixels, read_light_mask(stored).pixels, atol=0.02
+            )
         elif name.endswith(".glb"):
             ours, theirs = (load_scene(str(p), default_lights=False) for p in (made, stored))
             points = [np.concatenate([m.positions for m in s.meshes]) for s in (ours, theirs)]

@@ -2,16 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from elemental.gpu.timers import PassTiming
 from elemental.ui.averages import Averages
-from elemental.ui.panel.timeline import Times
 
 HISTORY_FRAMES = 240
+
+
+@dataclass(frozen=True)
+class Times:
+    """Averaged times, ms; ``frame`` and ``panel`` are None until one is known."""
+
+    gpu: Mapping[str, float]
+    """By pass, in the order of the frame."""
+    cpu: Mapping[str, float]
+    frame: float | None
+    panel: float | None
+    history: npt.NDArray[np.float32]
+    """Of the last frames, oldest first."""
 
 
 class Measured:

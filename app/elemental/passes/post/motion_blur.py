@@ -94,8 +94,9 @@ def longest_streaks(g: Graph, motion: AnyTexture, block: Block) -> AnyTexture:
     tile, (width, height) = int(block["tile"]), motion.size[:2]
     columns, rows = -(-width // tile), -(-height // tile)
     longest = motion
-    for axis, size in ((1, (width, rows)), (0, (columns, rows))):  # threads side by side read so
-        along, longest = longest, g.texture("motion.longest", size=size, format=RG16F)
+    rows_first = ((1, "longest_rows", (width, rows)), (0, "longest", (columns, rows)))
+    for axis, name, size in rows_first:  # threads side by side read so
+        along, longest = longest, g.texture(f"motion.{name}", size=size, format=RG16F)
         g.raster(
             LONGEST[axis],
             f"post/motion_longest.{'xy'[axis]}",

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 from imgui_bundle import imgui
 
 from elemental.ui import theme
+from elemental.ui.measured import Times
 from elemental.ui.theme import Rgb
 from elemental.ui.widgets import Widgets
 
@@ -47,19 +47,6 @@ def hues_of(names: Sequence[str]) -> dict[str, Rgb]:
     """A colour for each system."""
     systems = dict.fromkeys(map(system_of, names))
     return {system: HUES[k % len(HUES)] for k, system in enumerate(systems)}
-
-
-@dataclass(frozen=True)
-class Times:
-    """Averaged times, ms; ``frame`` and ``panel`` are None until one is known."""
-
-    gpu: Mapping[str, float]
-    """By pass, in the order of the frame."""
-    cpu: Mapping[str, float]
-    frame: float | None
-    panel: float | None
-    history: npt.NDArray[np.float32]
-    """Of the last frames, oldest first."""
 
 
 def timeline_page(w: Widgets, times: Times) -> None:
