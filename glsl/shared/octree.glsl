@@ -35,7 +35,8 @@ struct Node {
 
 // One rasterized sample of a surface. position: 10:10:10 coordinates on the finest lattice from the
 // scene's corner, and 2 bits: the share of decals that it takes; albedo: RGBA8, a = opacity;
-// normal: snorm8 xyz, high byte: the bit of the side that its lattice line meets; emissive: RGB9E5 radiance.
+// normal: snorm8 xyz, high byte: the bit of the side that its lattice line meets; emissive: RGB9E5
+// radiance.
 struct VoxelFragment {
     uint position;
     uint albedo;
