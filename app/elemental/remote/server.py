@@ -23,7 +23,7 @@ from elemental.settings import Settings
 LOOPBACK = "127.0.0.1"
 MAX_CONNECTIONS = 16
 """Served at once. One more takes the place of a client that has not shown the token yet; where all
-have, it waits unaccepted in the system's queue."""
+have, it waits, and those after it in the system's queue."""
 BACKLOG = 128
 """Connections in the system's queue."""
 ARRIVALS_PER_S = 1000.0
@@ -170,23 +170,31 @@ class Remote:
     async def _accept(self, listener: socket.socket) -> None:
         arrivals = Pace(ARRIVALS_PER_S, BURST)
         while True:
-            while len(self._guests) >= MAX_CONNECTIONS and self._stranger() is None:
-                self._left.clear()
-                await self._left.wait()
             await arrivals.wait()
             try:
                 client, address = await self._loop.sock_accept(listener)
             except OSError:
                 await asyncio.sleep(ACCEPT_RETRY_S)
                 continue
-            stranger = self._stranger() if len(self._guests) >= MAX_CONNECTIONS else None
-            if stranger is not None:
-                stranger.cancel()
+            try:
+                await self._make_room()
+            except asyncio.CancelledError:
+                client.close()
+                raise
             guest = Guest(address[0])
             task = self._start(self._converse(client, guest))
             self._guests[task] = guest
             task.add_done_callback(self._gone)
             task.add_done_callback(partial(_close, client))
+
+    async def _make_room(self) -> None:
+        """Wait until one more may be served, for whom a stranger is cut."""
+        while len(self._guests) >= MAX_CONNECTIONS:
+            stranger = self._stranger()
+            self._left.clear()
+            if stranger is not None:
+                stranger.cancel()
+            await self._left.wait()
 
     def _stranger(self) -> asyncio.Task[None] | None:
         """Who makes room: the oldest without the token, of the host that has most of them."""

@@ -7,6 +7,7 @@ import json
 import socket
 import threading
 import time
+from typing import Any
 from urllib.parse import quote
 
 import pytest
@@ -162,6 +163,32 @@ def test_strangers_are_refused_in_so_many_words_only_now_and_then(rig: Rig) -> N
     assert 1 <= told < 60
     assert set(refused[-20:]) & {b""}
     assert rig.put("/volumes/cellar/weight", 0.5)[0] == 200
+
+
+def test_those_who_arrive_at_once_are_no_more_than_the_limit(rig: Rig) -> None:
+    """Accepting them waits for nothing but those who make room."""
+    remote, counts = rig.remote, []
+    stands, goes_on = threading.Event(), threading.Event()
+
+    class Watched(dict[Any, Any]):
+        def __setitem__(self, key: Any, value: Any) -> None:
+            super().__setitem__(key, value)
+            counts.append(len(self))
+
+    def stand_still() -> None:
+        remote._guests = Watched(remote._guests)
+        stands.set()
+        goes_on.wait(TIMEOUT_S)
+
+    remote._loop.call_soon_threadsafe(stand_still)
+    assert stands.wait(TIMEOUT_S)
+    crowd = [socket.create_connection(rig.address, TIMEOUT_S) for _ in range(3 * MAX_CONNECTIONS)]
+    goes_on.set()
+    assert rig.put("/volumes/cellar/weight", 0.5)[0] == 200
+    assert len(counts) > len(crowd)
+    assert max(counts) == MAX_CONNECTIONS
+    for connection in crowd:
+        connection.close()
 
 
 def test_who_knows_the_token_is_not_cut_for_newer_ones(rig: Rig) -> None:
