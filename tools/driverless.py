@@ -45,15 +45,17 @@ def without_driver(device: Device) -> Iterator[None]:
     programs = list(device.library._programs.values())
     kept = [(program, program.mgl, dict(program.vertex_arrays)) for program in programs]
     write = Buffer.write
-    for name in real:
-        setattr(gl, name, ANSWERS.get(name, _nothing))
-    for program in programs:
-        program.mgl = stub
-        program.vertex_arrays.update(dict.fromkeys(program.vertex_arrays, stub))
-    Buffer.write = _nothing  # type: ignore[method-assign, assignment]
-    yield
-    Buffer.write = write  # type: ignore[method-assign]
-    for program, mgl, vertex_arrays in kept:
-        program.mgl, program.vertex_arrays = mgl, vertex_arrays
-    for name, value in real.items():
-        setattr(gl, name, value)
+    try:
+        for name in real:
+            setattr(gl, name, ANSWERS.get(name, _nothing))
+        for program in programs:
+            program.mgl = stub
+            program.vertex_arrays.update(dict.fromkeys(program.vertex_arrays, stub))
+        Buffer.write = _nothing  # type: ignore[method-assign, assignment]
+        yield
+    finally:
+        Buffer.write = write  # type: ignore[method-assign]
+        for program, mgl, vertex_arrays in kept:
+            program.mgl, program.vertex_arrays = mgl, vertex_arrays
+        for name, value in real.items():
+            setattr(gl, name, value)
