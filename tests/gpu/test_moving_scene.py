@@ -219,12 +219,14 @@ def test_a_ball_s_shadow_follows_it(renderers: Any) -> None:
 def test_frames_leave_nothing_to_the_cycle_collector(renderers: Any) -> None:
     """Which therefore may come rarely (core/collector.py)."""
     renderer = renderers(stage())
-    for number in range(16):
-        if number == 6:
-            gc.collect()
-            gc.disable()
-        renderer.render(EYE, 0.05 * number, number)
-        renderer.device.finish()
-    unreachable = gc.collect()
-    gc.enable()
+    try:
+        for number in range(16):
+            if number == 6:
+                gc.collect()
+                gc.disable()
+            renderer.render(EYE, 0.05 * number, number)
+            renderer.device.finish()
+        unreachable = gc.collect()
+    finally:
+        gc.enable()
     assert unreachable < 50  # ctypes leaves some when it makes a type
