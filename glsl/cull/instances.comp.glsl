@@ -1,8 +1,9 @@
 // Draw commands that are left with the instances that a view may see. Those of a command keep their
 // order, so that what is equally near is settled as without culling.
 //
-// STAGE 0: occluders, to be drawn first for their depth: of what was seen in the frame before and is in
-//          the frustum, what covers much with few triangles.
+// STAGE 0: occluders, to be drawn first for their depth: instances seen in the last frame and still in
+//          the frustum whose footprint is at least OCCLUDER_PX pixels for each triangle, or
+//          is not known as the eye's or the near plane cuts their box.
 // STAGE 1: those, and what their depth does not hide; notes what is seen for the frame after.
 // STAGE 2: what is in the frustum.
 // [Wihlidal16 "Optimizing the Graphics Pipeline with Compute"], [Haar15 "GPU-Driven Rendering Pipelines"]
@@ -82,7 +83,7 @@ bool is_drawn(uint place, uint triangles) {
 void main() {
     uint number = linear_thread_id() / CULL_GROUP;
     uint thread = gl_LocalInvocationIndex;
-    if (number >= uint(commands.length())) return;
+    if (number >= u_culling.command_count) return;
     DrawCommand command = everything[number];
     uint kept = 0u;
     for (uint begin = 0u; begin < command.instance_count; begin += CULL_GROUP) {

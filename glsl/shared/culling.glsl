@@ -2,6 +2,10 @@
 
 const uint CULL_GROUP = 64u;  // instances that a group of threads decides on at once
 
+layout(std140) uniform Culling {
+    uint command_count;  // draw commands of solid surfaces; others follow them
+} u_culling;
+
 // World box of an instance. Hidden ones are not `visible`.
 struct InstanceBox {
     vec3 low;

@@ -11,7 +11,8 @@ import pytest
 
 from elemental.gpu.device import Device
 from elemental.gpu.formats import R32F
-from elemental.passes import view_draws
+from elemental.gpu.graph import Graph
+from elemental.passes import depth_pyramid, view_draws
 from elemental.passes.camera_view import pack_view
 from elemental.passes.culling import in_frustum
 from elemental.passes.gbuffer import draw_gbuffer
@@ -72,17 +73,23 @@ def world() -> Scene:
 @pytest.fixture
 def pair(device: Device, world: Scene) -> Iterator[list[GpuScene]]:
     """The world twice: with culling and without."""
-    made = [GpuScene(device, world) for _ in range(2)]
+    made = [GpuScene(device, replace(world, materials=list(world.materials))) for _ in range(2)]
     yield made
     for gpu in made:
         gpu.release()
 
 
-def targets(device: Device, gpu: GpuScene, seen_from: Camera, culling: str) -> list[Array]:
+def targets(
+    device: Device,
+    gpu: GpuScene,
+    seen_from: Camera,
+    culling: str,
+    size: tuple[int, int] = SIZE,
+) -> list[Array]:
     """The G-buffer of a frame."""
     g = device.begin_frame()
     gpu.deform(g)
-    gb = draw_gbuffer(g, pack_view(seen_from, SIZE, gpu.bounds), gpu, SIZE, culling)
+    gb = draw_gbuffer(g, pack_view(seen_from, size, gpu.bounds), gpu, size, culling)
     handles = [getattr(gb, name) for name in TARGETS]
     for handle in handles:
         g.keep(handle)
@@ -163,6 +170,79 @@ def test_a_still_view_is_not_looked_at_again(device: Device, pair: list[GpuScene
     assert ran == [5, 5, 0, 0, 5]
 
 
+def test_a_view_that_rested_shows_what_changes(
+    device: Device, world: Scene, pair: list[GpuScene]
+) -> None:
+    """Another way to cull or material, each once the draws had settled: to the bit."""
+    holed = replace(world.materials[0], alpha_mode="mask", base_color_texture=TextureSlot(0))
+    steps = [(0, "occlusion"), (0, "frustum"), (3, "none"), (3, "occlusion"), (3, "occlusion")]
+    pictures = []
+    for number, (place, culling) in enumerate(steps):
+        for gpu in pair:
+            if number == len(steps) - 1:
+                gpu.set_material(0, holed)
+            gpu.update(moved(world, 0))
+        for _ in range(3):
+            want = targets(device, pair[1], walk(place), "none")
+            got = targets(device, pair[0], walk(place), culling)
+            for name, one, other in zip(TARGETS, got, want, strict=True):
+                np.testing.assert_array_equal(one, other, err_msg=f"{name}, step {number}")
+        device.finish()
+        assert not any(t.name.startswith(LOOKING) for t in device.timings)
+        pictures.append(want[TARGETS.index("depth")])
+    assert (pictures[-1] != pictures[-2]).mean() > 0.05  # the walls' holes are seen
+
+
+def test_more_pixels_show_what_was_between_fewer(device: Device) -> None:
+    """A ball behind a slit, which at first no pixel's centre meets."""
+    slabs = [(mesh(box((5.0, 6, 0.1))), at(x, 0, 0)) for x in (-2.6, 2.6)]
+    gpu = GpuScene(device, scene(*slabs, (mesh(sphere(0.5), smooth=True), at(0, 0, -2))))
+    eye = camera(vector(0, 0, 5), vector(0, 0, 0), fov_y=1.1)
+    few, many = (20, 12), (160, 96)  # of one shape, so that the matrix is the same
+    hidden = []
+    for size in (few, few, few, many):
+        depth = targets(device, gpu, eye, "occlusion", size)[0]
+        device.finish()
+        hidden.append(gpu.in_view.counters.counters()["instances_hidden"])
+    assert hidden == [0, 1, 1, 0]
+    np.testing.assert_array_equal(depth, targets(device, gpu, eye, "none", many)[0])
+    gpu.release()
+
+
+def test_frames_that_did_not_run_settle_nothing(
+    device: Device, pair: list[GpuScene], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One is given up before it is executed, one fails while it is."""
+
+    def fail(_: Graph) -> None:
+        raise RuntimeError("lost")
+
+    for _ in range(3):
+        targets(device, pair[0], walk(6), "occlusion")
+    lost = [device.begin_frame() for _ in range(2)]
+    for g in lost:
+        view = pack_view(walk(0), SIZE, pair[0].bounds)
+        g.keep(draw_gbuffer(g, view, pair[0], SIZE, "occlusion").a)
+    with monkeypatch.context() as patched:
+        patched.setattr(device.executor, "run", fail)
+        with pytest.raises(RuntimeError, match="lost"):
+            lost[1].execute()
+    for _ in range(4):
+        got = targets(device, pair[0], walk(0), "occlusion")
+        for one, other in zip(got, targets(device, pair[1], walk(0), "none"), strict=True):
+            np.testing.assert_array_equal(one, other)
+
+
+def test_without_culling_nothing_is_counted(device: Device, pair: list[GpuScene]) -> None:
+    """Not even what a frame before counts, which comes late."""
+    for culling in ("occlusion", "none", "frustum"):
+        targets(device, pair[0], walk(0), culling)
+        if culling != "occlusion":
+            device.finish()
+            counts = pair[0].in_view.counters.counters()
+            assert any(counts.values()) is (culling != "none")
+
+
 def test_boxes_are_in_the_frustum_as_numpy_says(device: Device) -> None:
     rng = np.random.default_rng(3)
     low = rng.uniform(-8, 8, (500, 3)).astype(np.float32)
@@ -219,11 +299,11 @@ def test_the_pyramid_holds_the_farthest_depths(device: Device, size: tuple[int, 
     depth = rng.random(size[::-1], np.float32)
     g = device.begin_frame()
     source = device.texture("depths", size, R32F, data=depth)
-    pyramid = view_draws.depth_pyramid(g, source)
+    pyramid = depth_pyramid.depth_pyramid(g, source)
     g.keep(pyramid)
     g.execute()
     assert pyramid.physical is not None
-    for level in range(view_draws.LEVELS):
+    for level in range(depth_pyramid.LEVELS):
         side = 2 << level
         padded = np.zeros([-(-n // side) * side for n in depth.shape], np.float32)
         padded[: size[1], : size[0]] = depth

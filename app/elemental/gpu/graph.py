@@ -63,7 +63,7 @@ AnyResource = Texture | TextureHandle | Buffer | BufferHandle
 class Graph:
     """One frame. Declare passes, ``keep`` the outputs, ``execute``; made by ``begin_frame``."""
 
-    __slots__ = ("_executed", "device", "kept", "passes", "persistent", "resources")
+    __slots__ = ("_executed", "device", "has_run", "kept", "passes", "persistent", "resources")
 
     def __init__(self, device: Device) -> None:
         self.device = device
@@ -72,6 +72,8 @@ class Graph:
         self.persistent: set[int] = set()
         self.kept: set[int] = set()
         self._executed = False
+        self.has_run = False
+        """Whether the frame was executed to its end."""
 
     # Resources ---------------------------------------------------------------------------------
 
@@ -286,6 +288,7 @@ class Graph:
         self._executed = True
         try:
             self.device.executor.run(self)
+            self.has_run = True
         finally:  # handles know the graph: without this, each frame waits for the cycle collector
             self.passes.clear()
             self.resources.clear()

@@ -9,24 +9,21 @@ import numpy as np
 
 from elemental.core.layout import Block, layouts, pack, pack_array
 from elemental.gpu.device import Device
-from elemental.gpu.formats import R32F
 from elemental.gpu.graph import Graph
-from elemental.gpu.refs import AnyTexture, Mip, Ref, TextureHandle
+from elemental.gpu.refs import Ref, TextureHandle
 from elemental.gpu.shaders import Compute
+from elemental.passes.depth_pyramid import depth_pyramid
 from elemental.passes.instance_table import InstanceTable
 from elemental.passes.placed import Placed
 from elemental.passes.scene_pack import Array
 
-CAMERA, OCCLUDERS = "camera", "camera.occluders"
-"""Viewers whose draws are here: what the camera sees, and what of it is drawn first."""
+CAMERA = "camera"
+"""The viewer of all that the camera sees."""
+OCCLUDERS = "camera.occluders"
+"""The viewer of what is drawn first, for its depth alone: it may hide others."""
 SEEN_BEFORE, SEEN_NOW, IN_FRUSTUM = (
     Compute("cull/instances.comp.glsl", defines={"STAGE": stage}) for stage in range(3)
 )
-PYRAMID = {
-    level: Compute("cull/depth_pyramid.comp.glsl", defines={"LEVEL": level}) for level in (0, 4)
-}
-LEVELS, TILE_PX = 8, 16
-"""Of the depth pyramid, and pixels a side of the texels of its fourth level."""
 OCCLUSION_FROM = 20_000
 """Triangles of a scene from which it pays to find out what others hide [measured]."""
 SETTLED = 2
@@ -62,7 +59,7 @@ class ViewDraws:
 
     `visible` holds them. A frame that `hides` draws `occluders` first, of what the frame before
     saw: their depth tells what others hide. Nothing is read back. Frames of one view and one scene
-    go on with the commands that they have.
+    go on with the commands that they have, once graphs that wrote these have run.
 
     From `everything` that could be drawn, of which `solid` (D,) DRAW_COMMAND come first.
     """
@@ -77,14 +74,16 @@ class ViewDraws:
     ) -> None:
         self._everything, self._table, self._commands = everything, table, len(solid)
         self._visible, self.occluders = place(CAMERA), place(OCCLUDERS)
+        self._extent = pack(layouts().block("Culling"), command_count=len(solid))
         self.counters = CullCounters()
         order = everything.order.nbytes
         self._seen = device.buffer("scene.seen", np.zeros(order // 4, "<u4"), category="meshes")
         self._boxes = device.buffer("scene.boxes", _boxes(table), category="meshes", dynamic=True)
         corners = solid["count"].astype(np.int64) @ solid["instance_count"]
-        self._many = int(corners) >= 3 * OCCLUSION_FROM
+        self._occlusion_pays = int(corners) >= 3 * OCCLUSION_FROM
         self._key: tuple[object, ...] = ()
         self._frames = 0
+        self._last: Graph | None = None
         self._culls = self.hides = False
 
     @property
@@ -105,12 +104,15 @@ class ViewDraws:
 
         view: the block View; version: differs where the scene does; culling: one of CULLING.
         """
-        if culling == "occlusion" and not self._many:
+        if culling == "occlusion" and not self._occlusion_pays:
             culling = "frustum"
         key = (np.asarray(view["clip_from_world"]).tobytes(), size, version, culling)
-        self._frames = self._frames + 1 if key == self._key else 0
-        self._key = key
+        stands = key == self._key and self._last is not None and self._last.has_run
+        self._frames = self._frames + 1 if stands else 0
+        self._key, self._last = key, g
         rests = self._frames >= SETTLED
+        if self._culls and culling == "none":
+            self.counters = CullCounters()  # counts that are still under way reach those of before
         self._culls, self.hides = culling != "none", culling == "occlusion" and not rests
         if self.hides:
             self._cull(g, SEEN_BEFORE, view, self.occluders, {"Seen": self._seen})
@@ -153,7 +155,7 @@ class ViewDraws:
                 **reads,
             },
             writes={"Commands": into.commands, "Drawn": into.order, **writes},
-            params={"View": view},
+            params={"View": view, "Culling": self._extent},
             threads=self._commands * int(layouts().constant("CULL_GROUP")),
         )
 
@@ -170,26 +172,3 @@ def _boxes(table: InstanceTable, rows: slice = slice(None)) -> Array:
     low, high, visible = table.low[rows], table.high[rows], table.visible[rows]
     struct = layouts().struct("InstanceBox")
     return pack_array(struct, len(low), low=low, visible=visible.astype(np.float32), high=high)
-
-
-def depth_pyramid(g: Graph, depth: AnyTexture) -> TextureHandle:
-    """R32F of LEVELS levels: the farthest depth of squares of 2, 4, … pixels a side.
-
-    Its sides are powers of two, so that every texel stands for whole squares; those past the
-    picture's rim hold nothing.
-    """
-    size = depth.size[:2]
-    smallest = 1 << LEVELS
-    base = [max(1 << (side - 1).bit_length() >> 1, smallest) for side in size]
-    pyramid = g.texture("depth.pyramid", size=(base[0], base[1]), format=R32F, mips=LEVELS)
-    reads: dict[str, Ref] = {"u_depth": depth}
-    for level, shader in PYRAMID.items():
-        groups = [-(-side // TILE_PX) for side in size]
-        writes: dict[str, Ref] = {f"o_level{n}": Mip(pyramid, level + n) for n in range(4)}
-        params = {"DepthPyramid": pack(layouts().block("DepthPyramid"), source_size=size)}
-        g.compute(
-            shader, f"depth.pyramid.{level}", reads=reads, writes=writes,
-            params=params, groups=groups,
-        )  # fmt: skip
-        reads, size = {"u_finer": Mip(pyramid, level + 3)}, (groups[0], groups[1])
-    return pyramid
