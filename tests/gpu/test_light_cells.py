@@ -169,7 +169,7 @@ def test_voxels_are_lit_the_same_to_the_bit(renderers: Any) -> None:
         ran = [timing.name for timing in made.device.timings]
         assert ("lights.world_cells" in ran) == culling
     np.testing.assert_array_equal(*pictures)
-    assert pictures[0][..., :3].max() > 0.05
+    assert pictures[0][..., :3].max() > 0.02  # there is light
 
 
 def test_a_target_of_another_camera_is_another_grid(rig: MakeRig) -> None:
