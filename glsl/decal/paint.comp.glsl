@@ -10,20 +10,16 @@ vec2 decal_uv_dy = vec2(0.0);
 #define MATERIAL_UV_DY(uv) decal_uv_dy
 
 #include "lib/decal.glsl"
-#include "lib/dispatch.glsl"
+#include "lib/fragment_queue.glsl"
 #include "lib/lattice.glsl"
 #include "lib/material.glsl"
 #include "lib/packing.glsl"
 #include "lib/scene_lattice.glsl"
 #include "shared/decals.glsl"
 #include "shared/decal_paint.glsl"
-#ifndef MOVING
-#define MOVING 0
-#endif
 
 layout(local_size_x = 128) in;  // FRAGMENT_GROUP
 
-layout(std430) readonly buffer State { OctreeState octree_state; };
 layout(std430) buffer Fragments { VoxelFragment fragments[]; };
 
 // A fragment lies up to so many voxels from the surface that it is of.
@@ -58,11 +54,8 @@ void paint(uint number, vec3 p_ws, vec3 normal_ws, float mask, inout Painted pai
 }
 
 void main() {
-    uint index = linear_thread_id();
-#if MOVING
-    index += octree_state.still_count;
-#endif
-    if (index >= min(octree_state.fragment_count, u_octree.fragment_capacity)) return;
+    uint index = queue_index();
+    if (!is_queued(index)) return;
     uint code = fragments[index].position;
     float mask = decal_mask_of_position(code);
     if (mask <= 0.0) return;

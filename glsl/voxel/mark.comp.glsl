@@ -1,16 +1,12 @@
 // Sets the bit of every lattice point that a fragment fell on. MOVING=1: of the fragments behind those
 // of what never moves, among the points of this build, of what moves, and of what has to be done anew.
 
-#include "lib/dispatch.glsl"
+#include "lib/fragment_queue.glsl"
 #include "lib/node_bits.glsl"
 #include "lib/regions.glsl"
-#ifndef MOVING
-#define MOVING 0
-#endif
 
 layout(local_size_x = 128) in;
 
-layout(std430) readonly buffer State { OctreeState octree_state; };
 layout(std430) readonly buffer Fragments { VoxelFragment fragments[]; };
 layout(std430) buffer Points { uint point_words[]; };
 #if MOVING
@@ -19,11 +15,8 @@ layout(std430) buffer Dirty { uint dirty_words[]; };
 #endif
 
 void main() {
-    uint index = linear_thread_id();
-#if MOVING
-    index += octree_state.still_count;
-#endif
-    if (index >= min(octree_state.fragment_count, u_octree.fragment_capacity)) return;
+    uint index = queue_index();
+    if (!is_queued(index)) return;
     int level;
     uvec3 point = leaf_point(unpack_position(fragments[index].position), level);
     uint code = grid_code(level + 1, point);
