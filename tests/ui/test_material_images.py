@@ -15,10 +15,12 @@ from imgui_bundle import imgui
 from elemental.core.images import write_png
 from elemental.scene.materials import Texture
 from elemental.ui import images
+from elemental.ui.images import Place
 from ui.robot import Robot
 
 Hands = Callable[..., Robot]
 ROW = "base_color_texture"
+PLACE = Place("material", 0, ROW)
 SIZE = (1200, 1000)
 
 
@@ -35,7 +37,7 @@ def arrive(robot: Robot) -> None:
     """Let frames pass until no file is being read."""
     end = time.monotonic() + 30
     robot.frames(2)
-    while robot.desk.images.is_reading((0, ROW)):
+    while robot.desk.images.is_reading(PLACE):
         assert time.monotonic() < end
         time.sleep(0.005)
         robot.frames()
@@ -113,7 +115,12 @@ def test_an_image_is_looked_for(hands: Hands, scene_file: Path, blue: Path) -> N
     ],
 )
 def test_a_bad_file_is_told_and_changes_nothing(
-    hands: Hands, scene_file: Path, name: str, content: bytes | None, reason: str
+    hands: Hands,
+    scene_file: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    name: str,
+    content: bytes | None,
+    reason: str,
 ) -> None:
     if content is not None:
         (scene_file.parent / name).write_bytes(content)
@@ -125,7 +132,7 @@ def test_a_bad_file_is_told_and_changes_nothing(
     assert said.kind == "error"
     assert str(scene_file.parent) in said.text
     assert reason in said.text
-    robot.desk.images.largest_px = 4
+    monkeypatch.setattr(robot.desk.device, "largest_texture_px", 4)
     write_png(scene_file.parent / "wide.png", np.zeros((1, 8, 3), np.uint8))
     enter(robot, "wide.png")
     assert "is 8x1; this driver takes 4 pixels a side" in robot.desk.log.entries[-1].text
@@ -163,7 +170,7 @@ def test_frames_go_on_while_a_file_is_read(
     drawn = robot.desk.drawn
     robot.frames(3)
     assert robot.desk.drawn == drawn + 3
-    assert robot.desk.images.is_reading((0, ROW))
+    assert robot.desk.images.is_reading(PLACE)
     gate.set()
     arrive(robot)
     assert robot.desk.document.state.materials[0].base_color_texture is not None

@@ -19,7 +19,17 @@ def read_light_mask(path: Path) -> LightMask:
     Raises InputError.
     """
     codes = read_png_jpeg_webp(path).astype(np.float32) / np.float32(255.0)
-    return LightMask(path.name, decode_srgb(codes[..., :3]) * codes[..., 3:])
+    return LightMask(path.name, decode_srgb(codes[..., :3]) * codes[..., 3:], path)
+
+
+def masked(light: Light, mask: LightMask | None) -> Light:
+    """The light through another mask; without one, its size, drift and roll are the defaults."""
+    if mask is not None:
+        return replace(light, mask=mask)
+    roll = light.roll if light.profile is not None else 0.0
+    return replace(
+        light, mask=None, mask_size=Light.mask_size, mask_scroll=Light.mask_scroll, roll=roll
+    )
 
 
 @dataclass

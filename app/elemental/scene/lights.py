@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -23,6 +24,8 @@ class LightMask:
 
     name: str
     pixels: FloatArray
+    file: Path | None = None
+    """Where it was read from."""
 
 
 @dataclass
@@ -108,6 +111,8 @@ def checked(light: Light) -> Light:
         wrong.setdefault("outer_angle", "is not between inner_angle and a right angle")
     if light.temperature is not None and not COOLEST <= light.temperature <= HOTTEST:
         wrong.setdefault("temperature", f"is not {COOLEST:g} to {HOTTEST:g} K")
+    if light.mask is not None and light.kind == "point":
+        wrong.setdefault("mask", "is for spot and directional lights")
     for field, reason in wrong.items():
         raise InputError(f"light {light.name!r}", field, reason)
     return light

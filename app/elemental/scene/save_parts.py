@@ -26,12 +26,15 @@ DRAW_STATES = ("double_sided", "alpha_mode")
 """Keys of a material's table that hold the field of that name."""
 
 
-def put_lights(document: Any, before: Sequence[Light], after: Sequence[Light]) -> None:
+def put_lights(
+    document: Any, before: Sequence[Light], after: Sequence[Light], folder: Path
+) -> None:
     """Assign what changed, in ``lights`` for the file's own, which come first, else in
-    ``light_changes``, which name a model's light. Raises CannotEditError for the default sun."""
+    ``light_changes``, which name a model's light. Files are named as seen from ``folder``.
+    Raises CannotEditError for the default sun."""
     tables = document.get("lights", [])
     for number, (old, new) in enumerate(zip(before, after, strict=True)):
-        changes = _light_changes(old, new)
+        changes = _light_changes(old, new) | _mask_changes(old, new, folder)
         if not changes:
             continue
         is_own = number < len(tables)
@@ -61,6 +64,21 @@ def _light_changes(old: Light, new: Light) -> dict[str, Any]:
     for key in ("inner_angle", "outer_angle"):
         if getattr(new, key) != getattr(old, key):
             changes[f"{key}_deg"] = _short(math.degrees(getattr(new, key)))
+    return changes
+
+
+def _mask_changes(old: Light, new: Light, folder: Path) -> dict[str, Any]:
+    """The same of a light's mask, and of what says how it lies."""
+    changes: dict[str, Any] = {}
+    if new.mask is not old.mask:
+        file = None if new.mask is None else new.mask.file
+        changes["mask"] = None if file is None else relative(file, folder)
+    if new.roll != old.roll:
+        changes["roll_deg"] = _short(math.degrees(new.roll)) or None
+    for key in ("mask_size", "mask_scroll"):
+        value = getattr(new, key)
+        if value != getattr(old, key):
+            changes[key] = None if value == getattr(Light, key) else _plain(value)
     return changes
 
 
@@ -175,7 +193,7 @@ def literal(name: str) -> str:
 
 def _plain(value: Any) -> Any:
     """As TOML has it."""
-    if isinstance(value, np.ndarray):
+    if isinstance(value, np.ndarray | tuple):
         return [_short(float(part)) for part in value]
     return _short(value) if isinstance(value, float) else value
 

@@ -59,7 +59,9 @@ def save_scene(opened: Path, target: Path, changes: Changes, folder: Path | None
     if changes.settings:
         text = _with_settings(text, moved(changes.settings), target)
     if changes.lights is not None:
-        text = _edited(text, partial(_lights, *changes.lights), target, "lights")
+        before, after = changes.lights
+        put = partial(put_lights, before=before, after=after, folder=target.parent)
+        text = _edited(text, put, target, "lights")
     if changes.materials is not None:
         put = partial(put_materials, changes=changes.materials, folder=target.parent)
         text = _edited(text, put, target, "materials")
@@ -69,10 +71,6 @@ def save_scene(opened: Path, target: Path, changes: Changes, folder: Path | None
     parse_scene_file(text, target)
     with atomic_file(target.resolve()) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="")
-
-
-def _lights(before: Sequence[Light], after: Sequence[Light], document: Any) -> None:
-    put_lights(document, before, after)
 
 
 def _edited(text: str, edit: Callable[[Any], None], target: Path, section: str) -> str:

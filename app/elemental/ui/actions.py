@@ -15,13 +15,9 @@ from elemental.core.paths import named_file
 from elemental.passes.inspect import Target
 from elemental.passes.texels import Pixels
 from elemental.picture import save_picture
-from elemental.scene.definitions import SHARED
 from elemental.scene.evaluate import placed_camera
-from elemental.scene.materials import Texture
-from elemental.scene.parameters import PLAIN_TEXTURES
 from elemental.scene.save_names import name_in
 from elemental.ui import editor, reopening
-from elemental.ui.images import Place
 from elemental.ui.panel import buffers
 from elemental.ui.panel.file_dialog import FileDialog
 from elemental.ui.panel.scene import Selection
@@ -178,41 +174,6 @@ def browse(desk: Desk) -> None:
 
     suffixes = FILE_SUFFIXES.get(setting.key, IMAGES)
     desk.dialog = FileDialog(f"Choose a file: {setting.key}", start, suffixes, False, take)
-
-
-def choose_image(desk: Desk, place: Place, text: str) -> None:
-    """Have another image for a material's texture, from the next frames on; no text: none."""
-    index, name = place
-    document, scene, reader = desk.document, desk.stage.scene, desk.images
-    reader.forget(place)
-    material = document.state.materials[index]
-    parameter = material.definition.parameter(name)
-    plain = parameter is not None and parameter.default
-    if text.strip() in ("", plain):
-        document.set_material(index, material.without_image(name))
-        return
-    if text in PLAIN_TEXTURES and name not in SHARED:
-        document.set_material(index, material.without_image(name).with_value(name, text))
-        return
-
-    def take(texture: Texture) -> None:
-        scene.textures.append(texture)
-        now = document.state.materials[index]
-        document.set_material(index, now.with_image(name, len(scene.textures) - 1))
-
-    reader.ask(place, named_file(text.strip(), scene.path.parent.resolve()), take)
-
-
-def put_image_back(desk: Desk, place: Place) -> None:
-    """The image of a material's texture as it is saved."""
-    index, name = place
-    document = desk.document
-    desk.images.forget(place)
-    saved = document.saved.materials[index].texture(name)
-    material = document.state.materials[index].without_image(name)
-    if saved is not None:
-        material = material.with_slot(name, saved)
-    document.set_material(index, material)
 
 
 def _start_sequence(desk: Desk) -> None:

@@ -91,7 +91,7 @@ class Desk:
         self.started = time.perf_counter()
         self.pages = PageState()
         self.observers = Observers(device)
-        self.images = ImageReader(device.largest_texture_px)
+        self.images = ImageReader()
         self.thumbnails = Thumbnails(device)
         self.dialog: FileDialog | None = None
         self.window_acts: Callable[[str], None] = lambda _action: None

@@ -13,10 +13,12 @@ from elemental.scene.volumes import blend
 from elemental.ui import actions
 from elemental.ui.gui import SCALES
 from elemental.ui.hud import Figures, draw_hud, draw_keys, draw_message, draw_pixel
+from elemental.ui.image_choice import choose_image, put_image_back
 from elemental.ui.in_view import Lens, draw_gizmo, draw_volumes
 from elemental.ui.panel.buffers import BufferView, buffers_page
 from elemental.ui.panel.exposure import exposure_page
 from elemental.ui.panel.graph import GraphView, graph_page
+from elemental.ui.panel.image_row import Images
 from elemental.ui.panel.lights import lights_page
 from elemental.ui.panel.log import COLORS, LogFilter, log_page
 from elemental.ui.panel.materials import materials_page
@@ -24,7 +26,7 @@ from elemental.ui.panel.menu import MenuState, menu_bar
 from elemental.ui.panel.scene import Selection, scene_page
 from elemental.ui.panel.sequence import DEFAULT, sequence_page
 from elemental.ui.panel.settings import settings_page
-from elemental.ui.panel.textures import Images
+from elemental.ui.panel.textures import MaterialImages
 from elemental.ui.panel.timeline import ms_text, timeline_page
 from elemental.ui.panel.volumes import VolumeView, volumes_page
 from elemental.ui.sequence_job import SequenceWords
@@ -74,10 +76,13 @@ def pages_of(desk: Desk) -> list[Page]:
         volumes_page(w, state.volumes, desk.document, weights, eye)
 
     def materials(w: Widgets) -> None:
-        state.material = materials_page(w, state.material, desk.document, images_of(desk))
+        scene = desk.stage.scene
+        projected = frozenset(decal.material for decal in scene.decals)
+        images = MaterialImages(images_of(desk), scene.textures, projected)
+        state.material = materials_page(w, state.material, desk.document, images)
 
     def lights(w: Widgets) -> None:
-        state.light = lights_page(w, state.light, desk.document)
+        state.light = lights_page(w, state.light, desk.document, images_of(desk))
 
     def exposure(w: Widgets) -> None:
         observers.want("eye")
@@ -121,17 +126,14 @@ def pages_of(desk: Desk) -> list[Page]:
 
 
 def images_of(desk: Desk) -> Images:
-    """The images of the scene's materials, as their rows take them."""
-    textures = desk.stage.scene.textures
+    """Images of materials and lights, as their rows take them."""
     return Images(
-        textures,
         desk.stage.scene.path.parent,
-        lambda number: desk.thumbnails.of(number, textures[number]).glo,
-        partial(actions.choose_image, desk),
-        partial(actions.put_image_back, desk),
+        lambda key, image: desk.thumbnails.of(key, image).glo,
+        partial(choose_image, desk),
+        partial(put_image_back, desk),
         desk.images.is_reading,
         desk.images.problems.get,
-        frozenset(decal.material for decal in desk.stage.scene.decals),
     )
 
 

@@ -1,11 +1,19 @@
-"""Small copies of a scene's textures, for the panel to show."""
+"""Small copies of a scene's images, for the panel to show."""
 
 from __future__ import annotations
 
+from collections.abc import Hashable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from elemental.core.srgb import encode_srgb
 from elemental.gpu.device import Device
 from elemental.gpu.formats import RGBA8
 from elemental.gpu.resources import Texture
-from elemental.scene.materials import Texture as Image
+from elemental.scene.lights import LightMask
+from elemental.ui.images import Picture
 
 SIDE_PX = 128
 """Longest side of a copy."""
@@ -16,24 +24,21 @@ class Thumbnails:
 
     def __init__(self, device: Device) -> None:
         self._device = device
-        self._made: dict[int, tuple[Image, Texture]] = {}
+        self._made: dict[Hashable, tuple[Picture, Texture]] = {}
 
-    def of(self, number: int, image: Image) -> Texture:
-        """The copy of an image, which is the scene's texture of that number."""
-        held = self._made.get(number)
+    def of(self, key: Hashable, image: Picture) -> Texture:
+        """The copy of an image, held under a key, where it takes the place of another."""
+        held = self._made.get(key)
         if held is not None and held[0] is image:
             return held[1]
         if held is not None:
             held[1].release()
-        height, width = image.pixels.shape[:2]
-        step = max(-(-max(width, height) // SIDE_PX), 1)
-        texels = image.pixels[::step, ::step].copy()
-        texels[..., 3] = 255
+        texels = _texels(image)
         size = (texels.shape[1], texels.shape[0])
         texture = self._device.texture(
-            f"thumbnail.{number}", size, RGBA8, data=texels, category="targets"
+            f"thumbnail.{key}", size, RGBA8, data=texels, category="targets"
         )
-        self._made[number] = (image, texture)
+        self._made[key] = (image, texture)
         return texture
 
     def release(self) -> None:
@@ -41,3 +46,13 @@ class Thumbnails:
         for _, texture in self._made.values():
             texture.release()
         self._made.clear()
+
+
+def _texels(image: Picture) -> npt.NDArray[Any]:
+    """(H, W, 4) uint8, as large as a copy is."""
+    height, width = image.pixels.shape[:2]
+    step = max(-(-max(width, height) // SIDE_PX), 1)
+    few: npt.NDArray[Any] = image.pixels[::step, ::step, :3]
+    if isinstance(image, LightMask):
+        few = np.round(255.0 * encode_srgb(few)).astype(np.uint8)
+    return np.concatenate([few, np.full_like(few[..., :1], 255)], axis=2)

@@ -20,6 +20,7 @@ from elemental.core.images import write_png
 from elemental.core.paths import content_root
 from elemental.scene.defaults import default_sun
 from elemental.scene.definitions import find_definition
+from elemental.scene.light_masks import masked, read_light_mask
 from elemental.scene.lights import Light
 from elemental.scene.load import load_scene
 from elemental.scene.materials import Texture
@@ -172,6 +173,36 @@ def test_lights_and_materials_come_back_as_they_were_left(tmp_path: Path) -> Non
             assert math.isclose(wanted.inner_angle, got.inner_angle, rel_tol=1e-6)
     for comment in ("# ours", "# all alike"):
         assert comment in path.read_text()
+
+
+def test_a_models_light_keeps_its_mask_in_another_folder(tmp_path: Path) -> None:
+    gltf = corner()
+    gltf["extensionsUsed"] = ["KHR_lights_punctual"]
+    lamps = [{"type": "spot", "name": "lamp", "spot": {}}, {"type": "point", "name": "bulb"}]
+    gltf["extensions"] = {"KHR_lights_punctual": {"lights": lamps}}
+    for number in range(2):
+        gltf["nodes"].append({"extensions": {"KHR_lights_punctual": {"light": number}}})
+        gltf["scenes"][0]["nodes"].append(len(gltf["nodes"]) - 1)
+    opened = tmp_path / "corner.gltf"
+    opened.write_text(json.dumps(gltf))
+    file = tmp_path / "bars.png"
+    write_png(file, np.arange(48, dtype=np.uint8).reshape(4, 4, 3))
+    lamp, bulb = load_scene(opened, default_lights=False).lights
+    worn = replace(masked(lamp, read_light_mask(file)), roll=math.pi / 6, mask_scroll=(0.25, -0.5))
+    (tmp_path / "saved").mkdir()
+    target = tmp_path / "saved" / "lit.toml"
+    save_scene(opened, target, Changes(lights=((lamp, bulb), (worn, bulb))))
+    again, _ = load_scene(target, default_lights=False).lights
+    assert again.mask is not None
+    assert np.array_equal(again.mask.pixels, worn.mask.pixels)
+    assert (again.mask_scroll, again.mask_size) == ((0.25, -0.5), 1.0)
+    assert again.roll == pytest.approx(math.pi / 6)
+    save_scene(target, target, Changes(lights=((again, bulb), (masked(again, None), bulb))))
+    assert load_scene(target, default_lights=False).lights[0].mask is None
+    assert tomllib.loads(target.read_text())["light_changes"] == [{"name": "lamp"}]
+    target.write_text(target.read_text().replace('"lamp"', '"bulb"\nmask = "../bars.png"'))
+    with pytest.raises(InputError, match=r"light_changes\[0\]\.mask: is for spot and directional"):
+        load_scene(target, default_lights=False)
 
 
 ARTIST = """/*

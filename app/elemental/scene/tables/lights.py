@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field, model_validator
 
@@ -18,6 +18,8 @@ from elemental.scene.tables.base import (
     Vec3,
 )
 
+RollAngle: TypeAlias = Annotated[float, Field(ge=-360.0, le=360.0)]
+
 
 class LightTable(Table):
     kind: Literal["directional", "point", "spot"]
@@ -29,7 +31,7 @@ class LightTable(Table):
     intensity: NonNegative | None = None
     lumen: NonNegative | None = None
     ies: Name | None = None
-    roll_deg: Annotated[float, Field(ge=-360.0, le=360.0)] = 0.0
+    roll_deg: RollAngle = 0.0
     range: Positive | None = None
     inner_angle_deg: Annotated[float, Field(ge=0.0, le=90.0)] = 0.0
     outer_angle_deg: HalfAngle = 45.0
@@ -73,6 +75,10 @@ class LightChangeTable(Table):
     outer_angle_deg: HalfAngle | None = None
     source_radius: NonNegative | None = None
     casts_shadow: bool | None = None
+    roll_deg: RollAngle | None = None
+    mask: Name | None = None
+    mask_size: Positive | None = None
+    mask_scroll: Vec2 | None = None
 
 
 class EnvironmentTable(Table):

@@ -14,6 +14,8 @@ from elemental.scene.lights import Light
 from elemental.settings import Setting
 from elemental.ui import icons
 from elemental.ui.document import Document
+from elemental.ui.panel.image_row import Images
+from elemental.ui.panel.light_mask import mask_rows
 from elemental.ui.rows import list_height, property_row, spelled, vector_row
 from elemental.ui.widgets import Widgets
 
@@ -24,7 +26,7 @@ BRIGHTEST = 1e5
 FARTHEST_M = 1000.0
 
 
-def lights_page(w: Widgets, chosen: int, document: Document) -> int:
+def lights_page(w: Widgets, chosen: int, document: Document, images: Images) -> int:
     """Draw the page. Returns which light is chosen."""
     lights = document.state.lights
     if not lights:
@@ -45,6 +47,9 @@ def lights_page(w: Widgets, chosen: int, document: Document) -> int:
     saved = before[chosen] if chosen < len(before) else light
     if imgui.begin_child("light"):
         changed, gesture = _fields(w, light, saved)
+        if light.kind != "point":
+            of_mask, held = mask_rows(w, images, chosen, light, saved)
+            changed, gesture = changed | of_mask, gesture or held
         if changed:
             document.set_light(chosen, replace(light, **changed), gesture)
     imgui.end_child()
@@ -108,13 +113,13 @@ def _fields(w: Widgets, light: Light, saved: Light) -> tuple[dict[str, Any], Any
         if edit is not None:
             changed[field.key], gesture = _held(light, field, edit.value), edit.gesture
     for name, kinds in (("position", ("point", "spot")), ("direction", ("directional", "spot"))):
-        if light.kind in kinds:
+        if light.kind in kinds or (name == "position" and light.mask is not None):
             unit = "m" if name == "position" else ""
             here, there = _floats(getattr(light, name)), _floats(getattr(saved, name))
             edit = vector_row(w, name, name.capitalize(), here, there, unit=unit)
-            if edit is not None and any(edit.value):
+            is_direction = name == "direction"
+            if edit is not None and (any(edit.value) or not is_direction):
                 vector = np.array(edit.value, np.float32)
-                is_direction = name == "direction"
                 changed[name] = vector / np.linalg.norm(vector) if is_direction else vector
                 gesture = edit.gesture
     inner = changed.get("inner_angle", light.inner_angle)

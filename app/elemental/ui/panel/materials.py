@@ -16,7 +16,7 @@ from elemental.settings import Setting
 from elemental.settings.setting import Kind
 from elemental.ui import icons
 from elemental.ui.document import Document
-from elemental.ui.panel.textures import Images, texture_row
+from elemental.ui.panel.textures import MaterialImages, texture_row
 from elemental.ui.rows import list_height, property_row, spelled, vector_row
 from elemental.ui.widgets import Widgets
 
@@ -44,7 +44,7 @@ def setting_of(parameter: Parameter) -> Setting:
     )
 
 
-def materials_page(w: Widgets, chosen: int, document: Document, images: Images) -> int:
+def materials_page(w: Widgets, chosen: int, document: Document, images: MaterialImages) -> int:
     """Draw the page. Returns what is chosen."""
     materials = document.state.materials
     chosen = min(chosen, len(materials) - 1)
