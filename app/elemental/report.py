@@ -134,6 +134,8 @@ def overflow_warnings(counters: Mapping[str, int]) -> list[str]:
     """One line for each counter of dropped things that is not zero, with what helps."""
     remedies = {
         "octree_bricks_dropped": "; raise gi.memory_budget_mb or lower gi.resolution",
+        "octree_levels_dropped": ", since neither budget nor driver hold them; raise "
+        "gi.memory_budget_mb or lower gi.resolution",
         "lights_without_shadow": "; raise shadow.budget",
     }
     return [

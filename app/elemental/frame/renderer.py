@@ -137,7 +137,7 @@ class Renderer:
     def set_regions(self, regions: Sequence[Region]) -> None:
         """Replace the scene's regions, and with them leaf levels, from the next frame on."""
         self.scene.regions = list(regions)
-        if self._voxels is not None and not self._voxels.set_grid(self._grid()):
+        if self._voxels is not None and not self._voxels.set_grid(self._grids()[0]):
             self._drop_voxels()  # made anew
 
     def _update_area_lights(self) -> None:
@@ -155,9 +155,10 @@ class Renderer:
         if self._voxels is not None and brightest > self._voxels.octree.max_emission:
             self._drop_voxels()
 
-    def _grid(self) -> Grid:
+    def _grids(self) -> tuple[Grid, ...]:
+        """Of the scene's octree: the one that is asked for, and what it may fall back to."""
         resolution = self.settings["gi.resolution"]
-        return Grid.fit(self._meshes.bounds, resolution, self.scene.regions)
+        return Grid.ladder(self._meshes.bounds, resolution, self.scene.regions)
 
     def _move(self, time_s: float, pose: Pose | None) -> Sequence[Light]:
         """Bring the scene to its pose at a time, or to the given one. Returns its lights."""
@@ -234,15 +235,18 @@ class Renderer:
         if self._voxels is None:
             s = self.settings
             present = posed(self.scene, time_s) if self.scene.motion else self.scene
+            grid, *coarser = self._grids()
             self._voxels = VoxelLighting(
                 self.device,
                 self._meshes,
-                self._grid(),
+                grid,
                 area_m2=sizing.projected_area(present),
                 max_emission=sizing.max_emission(self.scene, self._area_lights.lights),
                 budget_bytes=s["gi.memory_budget_mb"] * MIB,
                 decals=self._decals.voxels,
+                coarser=coarser,
             )
+        self._voxels.refit()
         return self._voxels
 
     @property

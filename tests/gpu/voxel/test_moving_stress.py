@@ -39,7 +39,7 @@ def test_two_thousand_frames_in_pools_too_small(
     scene = world(BODIES, seed=7)
     scene.lights = [replace(scene.lights[0], casts_shadow=False)]
     renderer = Renderer(device, scene, Settings(), SIZE)
-    monkeypatch.setattr(renderer, "_grid", lambda: Grid.fit(renderer._meshes.bounds, 32))
+    monkeypatch.setattr(renderer, "_grids", lambda: (Grid.fit(renderer._meshes.bounds, 32),))
     eye = camera(vector(0, 0.4, 2.4), vector(0, -0.2, 0))
     walk = Walk(scene, np.random.default_rng(8), 0.25)
     walk.visible = np.arange(BODIES) % 2 == 0  # as many as on average

@@ -48,13 +48,15 @@ class Grid:
         bounds: tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]],
         resolution: int,
         regions: Sequence[Region] = (),
+        finest: int = MAX_LEVEL,
     ) -> Grid:
         """The cube for ``bounds`` (min, max), m; ``resolution`` lattice points along the scene.
 
         Each of ``regions`` shifts the leaf level of the cells of the 8^3 that it overlaps; the
-        last one wins. Levels stay within what the octree can hold.
+        last one wins. Levels stay within what the octree can hold, and no finer than ``finest``.
         """
         low, high = (np.asarray(corner, np.float64) for corner in bounds)
+        resolution = min(resolution, 1 << finest)
         leaf_level = resolution.bit_length() - 1
         extent = max(float((high - low).max()), MIN_SIZE_M)
         spacing = extent / (resolution - 1 - 2 * MARGIN_VOXELS)
@@ -62,12 +64,25 @@ class Grid:
         levels = np.full((REGION_SIDE,) * 3, leaf_level, np.int64)
         for region in regions:
             cells = _overlapped(region, corner, spacing * resolution / REGION_SIDE)
-            levels[cells] = np.clip(leaf_level + region.level_offset, REGION_LEVEL + 1, MAX_LEVEL)
+            levels[cells] = np.clip(leaf_level + region.level_offset, REGION_LEVEL + 1, finest)
         # A leaf answers for finer levels where a descent ends at it: below the dense levels.
         levels = np.maximum(levels, levels.max() - DENSE_LEVELS_BELOW_LEAF)
         # The cube reaches half the scene's side beyond it; its lattice stays the finest region's.
         origin = corner - 0.5 * resolution * spacing
         return cls(origin.astype(np.float32), 2 * resolution * spacing, levels.astype(np.uint32))
+
+    @classmethod
+    def ladder(
+        cls,
+        bounds: tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]],
+        resolution: int,
+        regions: Sequence[Region] = (),
+    ) -> tuple[Grid, ...]:
+        """`fit`, and what to fall back to where no pools can hold it: the finest leaf level one
+        less each time, down to REGION_LEVEL + 1."""
+        first = cls.fit(bounds, resolution, regions)
+        coarser = range(first.leaf_level - 1, REGION_LEVEL, -1)
+        return first, *(cls.fit(bounds, resolution, regions, finest) for finest in coarser)
 
     @property
     def leaf_level(self) -> int:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from elemental.core.layout import Block
@@ -15,6 +16,7 @@ from elemental.passes.voxel import sizing
 from elemental.passes.voxel.build import build
 from elemental.passes.voxel.grid import Grid
 from elemental.passes.voxel.kept import Kept, carry_still, keep_still, mark_still
+from elemental.passes.voxel.ladder import Ladder
 from elemental.passes.voxel.light import compress, filter_levels, light_voxels
 from elemental.passes.voxel.octree import Capacity, Counts, Octree
 from elemental.passes.voxel.steps import (
@@ -40,6 +42,8 @@ class VoxelLighting:
     """The octree of a scene with what it was built from and lit by.
 
     ``area_m2``: `sizing.projected_area`; ``capacity``: None counts first and allocates to fit.
+    ``coarser``: grids to fall back to, one after the other, where no pools hold what ``grid`` asks
+    for.
     ``decals`` colour what is built. Where parts of the scene can move, the octree is built in steps
     (`steps`).
     """
@@ -54,15 +58,18 @@ class VoxelLighting:
         budget_bytes: int,
         capacity: Capacity | None = None,
         decals: DecalVoxels | None = None,
+        coarser: Sequence[Grid] = (),
     ) -> None:
         self.device = device
         self.scene = scene
         self.decals = decals
         self.budget_bytes = budget_bytes
+        self._area_m2 = area_m2
+        self._ladder = Ladder((grid, *coarser))
         self._moves = bool(scene.dynamic.any())
         self._dynamic = scene.dynamic.tobytes()
         if capacity is None:
-            capacity = self._room_for(sizing.count(device, scene, grid, area_m2))
+            grid, capacity = self._finest_that_fits()
         self._allocate(grid, capacity, max_emission)
         self.counts = NOTHING
         self._built_version: int | None = None
@@ -81,11 +88,33 @@ class VoxelLighting:
         if what == "geometry":
             self._built_version = None
 
+    def _finest_that_fits(self) -> tuple[Grid, Capacity]:
+        count = partial(sizing.count, self.device, self.scene, area_m2=self._area_m2)
+        return self._ladder.descend(count, self._holds)
+
+    def _holds(self, grid: Grid, counts: Counts) -> tuple[Capacity, bool]:
+        """Pools for what a grid asks for, and whether they hold it all."""
+        room = self._room_for(counts)
+        return room, sizing.holds_all(room, counts, grid.one_leaf_level, self._moves)
+
+    def refit(self) -> None:
+        """Before a frame: take a coarser grid where the last counted build overflowed and no pools
+        could hold it, and the finer one again where they could. Counts with a wait, since pools of
+        a new grid have to be made; frames that keep theirs wait for nothing."""
+        if self.counts == NOTHING or not self._ladder.has_to_move(self.counts, self._holds):
+            return
+        grid, capacity = self._finest_that_fits()
+        self.release()
+        self._allocate(grid, capacity, self.octree.max_emission)
+        self.counts = NOTHING
+        self._built_version = self._lit_by = None
+        self._regridded = False
+
     def set_grid(self, grid: Grid) -> bool:
         """Take other regions' leaf levels from the next frame on. Returns whether it can.
 
-        It can where fragments are kept and stay on the same finest lattice: they are marked anew
-        in pools of the size that they ask for, which is counted, with a wait; nothing is drawn.
+        It can where fragments are kept, stay on the same finest lattice, and fit: they are marked
+        anew in pools of the size that they ask for. It is counted, with a wait; nothing is drawn.
         """
         old, kept = self.octree, self._kept
         on_lattice = (grid.leaf_level, grid.size, *grid.origin) == (
@@ -93,8 +122,10 @@ class VoxelLighting:
         )  # fmt: skip
         if kept is None or self._built_version is None or not on_lattice:
             return False
-        counts = sizing.count_again(old, grid, kept.fragments)
-        room = replace(self._room_for(counts), fragments=old.capacity.fragments)
+        room, holds_all = self._holds(grid, sizing.count_again(old, grid, kept.fragments))
+        if not holds_all or self._ladder.dropped:
+            return False
+        room = replace(room, fragments=old.capacity.fragments)
         self._allocate(grid, room, old.max_emission)
         assert self._kept is not None
         g = self.device.begin_frame()
@@ -140,7 +171,7 @@ class VoxelLighting:
                 everything = lit_anew or (gathers and not spread)
                 blocks = self._next_slice() if spread else NO_BLOCKS
                 whole |= self._step(g, self._kept, shadows, everything, blocks)
-            g.read_later(self.octree.state, self._counted)
+            g.read_later(self.octree.state, partial(self._counted, self.octree))
             self._built_version = self.scene.version
         elif lit_anew and self._kept is not None:
             list_everything(g, self.octree, self._kept)
@@ -212,7 +243,9 @@ class VoxelLighting:
         step(g, self.scene, self.octree, kept, shadows, boxes, everything, blocks, self.decals)
         return whole
 
-    def _counted(self, raw: bytes) -> None:
+    def _counted(self, octree: Octree, raw: bytes) -> None:
+        if octree is not self.octree:
+            return  # of pools that are gone
         self.counts = Counts.from_state(raw)
         if self._larger() is not None:
             self.invalidate("geometry")
@@ -230,8 +263,10 @@ class VoxelLighting:
 
     def _room_for(self, counts: Counts) -> Capacity:
         if self._moves:
-            return sizing.capacity_in_motion(counts, self.budget_bytes)
-        return sizing.capacity_for(counts, self.budget_bytes)
+            return sizing.capacity_in_motion(counts, self.budget_bytes, self.device.storage_limit)
+        return sizing.capacity_for(
+            counts, self.budget_bytes, storage_bytes=self.device.storage_limit
+        )
 
     def _grow(self) -> bool:
         """Take larger pools where they are worth it."""
@@ -256,6 +291,7 @@ class VoxelLighting:
             "octree_bricks_dropped": counts.bricks_dropped,
             "octree_leaf_bricks": counts.leaves,
             "octree_resolution": grid.resolution,
+            "octree_levels_dropped": self._ladder.dropped,
         }
 
     def release(self) -> None:

@@ -131,6 +131,11 @@ class Atlas:
                 return cls(side_log2, (side * width, side * height, layers * depth))
         raise ValueError(f"{bricks} bricks are more than an atlas can hold")
 
+    @staticmethod
+    def most(brick_texels: tuple[int, int, int]) -> int:
+        """How many bricks the largest holds."""
+        return TEXTURE_3D_MAX // brick_texels[2] << 2 * ATLAS_SIDES_LOG2[-1]
+
     @property
     def texel(self) -> tuple[float, float, float]:
         """A texel's share of the texture along each axis."""

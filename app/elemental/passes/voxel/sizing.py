@@ -12,19 +12,27 @@ from elemental.gpu.device import Device
 from elemental.gpu.resources import Buffer
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.voxel.build import find_nodes
-from elemental.passes.voxel.grid import Grid
-from elemental.passes.voxel.octree import SIDED_BYTES_A_BRICK, Capacity, Counts, Survey
+from elemental.passes.voxel.grid import MAX_LEVEL, Grid, octal_sum
+from elemental.passes.voxel.octree import (
+    LEAF_TEXELS,
+    SIDED_BYTES_A_BRICK,
+    SIDED_TEXELS,
+    Atlas,
+    Capacity,
+    Counts,
+    Survey,
+)
 from elemental.passes.voxel.voxelize import voxelize
 from elemental.scene.area_lights import AreaLight
 from elemental.scene.model import Scene
 
 UNBOUNDED = 0xFFFFFFFF
 STORAGE_BLOCK_BYTES = 1 << 27
-"""Of the largest storage block that every driver allows [GL 4.5, table 23.64]. What follows is how
-many of each one holds; dispatches are folded and reach further, atlases hold more."""
-FRAGMENTS_MAX = STORAGE_BLOCK_BYTES // int(layouts().struct("VoxelFragment").itemsize)
-LEAVES_MAX = STORAGE_BLOCK_BYTES // (8 * int(layouts().struct("VoxelAttributes").itemsize))
-INTERIOR_MAX = STORAGE_BLOCK_BYTES // SIDED_BYTES_A_BRICK
+"""Of a storage block, where no driver is asked: what GL 4.5 promises (table 23.64)."""
+BRICKS_MAX = int(layouts().constant("NODE_BRICK_MASK")) - 1
+"""What a node can name."""
+TILES_MAX = (int(layouts().constant("BRICK_NODE_MASK")) >> 3) - octal_sum(MAX_LEVEL - 2) // 8
+"""Of eight nodes, beside the dense ones, what a brick can name."""
 FRAGMENT_SLACK = 1.1
 """Over the expected count of fragments, whose standard deviation is far smaller."""
 MOTION_SLACKS = (1.3, 1.1)
@@ -34,6 +42,23 @@ first, the second: leaves that are there come before room for some that may come
 GAIN_MIN = 1 / 16
 """Least share of the bricks asked for that new pools must add where they still can't hold all
 [inferred: more than what moves from frame to frame, less than one sees]."""
+
+
+def storage_max(storage_bytes: int) -> Capacity:
+    """The most that pools can hold where a storage block has so many bytes, whatever the budget.
+
+    Dispatches are folded and reach further.
+    """
+    return Capacity(
+        fragments=storage_bytes // int(layouts().struct("VoxelFragment").itemsize),
+        tiles=min(TILES_MAX, storage_bytes // (8 * int(layouts().struct("Node").itemsize))),
+        bricks=min(BRICKS_MAX, storage_bytes // int(layouts().struct("Brick").itemsize)),
+        leaves=min(
+            Atlas.most(LEAF_TEXELS),
+            storage_bytes // (8 * int(layouts().struct("VoxelAttributes").itemsize)),
+        ),
+        interior=min(Atlas.most(SIDED_TEXELS), storage_bytes // SIDED_BYTES_A_BRICK),
+    )
 
 
 def projected_area(scene: Scene) -> float:
@@ -72,8 +97,9 @@ def count(device: Device, scene: GpuScene, grid: Grid, area_m2: float) -> Counts
 
     Done once when a scene or a grid is new; the frames themselves never wait.
     """
+    most = storage_max(device.storage_limit).fragments
     expected = area_m2 / grid.voxel_m**2 * FRAGMENT_SLACK + 4 * grid.resolution
-    fragments = int(min(max(expected, 1024.0), FRAGMENTS_MAX))
+    fragments = int(min(max(expected, 1024.0), most))
     while True:
         unbounded = Capacity(fragments, UNBOUNDED, UNBOUNDED, UNBOUNDED, UNBOUNDED // 2)
         survey = Survey(device, grid, unbounded, 0.0)
@@ -84,9 +110,9 @@ def count(device: Device, scene: GpuScene, grid: Grid, area_m2: float) -> Counts
         counts = Counts.from_state(survey.state.read().tobytes())
         survey.release()
         asked = counts.fragments + counts.fragments_dropped
-        if counts.fragments_dropped == 0 or fragments == FRAGMENTS_MAX:
+        if counts.fragments_dropped == 0 or fragments == most:
             return replace(counts, fragments=asked, fragments_dropped=0)
-        fragments = min(asked, FRAGMENTS_MAX)
+        fragments = min(asked, most)
 
 
 def count_again(octree: Survey, grid: Grid, fragments: Buffer) -> Counts:
@@ -112,25 +138,33 @@ def with_slack(counts: Counts, slack: float) -> Counts:
     def more(count: int) -> int:
         return int(count * slack) + 1
 
+    leaves, interior = more(counts.leaves_asked), more(counts.interior_asked)
+    both = counts.leaves_asked + counts.interior_asked - counts.bricks - counts.bricks_dropped
     return replace(
         counts,
         fragments=more(counts.fragments + counts.fragments_dropped),
         fragments_dropped=0,
         tiles=more(counts.tiles + counts.tiles_dropped),
         tiles_dropped=0,
-        bricks=more(counts.bricks + counts.bricks_dropped),
+        bricks=leaves + interior - int(both * slack),
         bricks_dropped=0,
-        leaves_asked=more(counts.leaves_asked),
-        interior_asked=more(counts.interior_asked),
+        leaves_asked=leaves,
+        interior_asked=interior,
     )
 
 
-def capacity_for(counts: Counts, budget_bytes: int, keeps_slots: bool = False) -> Capacity:
-    """Pools for these counts; where the budget or the driver can't hold them all, fewer leaves,
-    and where it can't hold the others either, fewer of those."""
+def capacity_for(
+    counts: Counts,
+    budget_bytes: int,
+    keeps_slots: bool = False,
+    storage_bytes: int = STORAGE_BLOCK_BYTES,
+) -> Capacity:
+    """Pools for these counts; where the budget or a storage block can't hold them all, fewer
+    leaves, and where they can't hold the others either, fewer of those."""
+    most = storage_max(storage_bytes)
     wanted = Capacity(
-        fragments=min(max(counts.fragments + counts.fragments_dropped, 1), FRAGMENTS_MAX),
-        tiles=max(counts.tiles + counts.tiles_dropped, 1),
+        fragments=min(max(counts.fragments + counts.fragments_dropped, 1), most.fragments),
+        tiles=min(max(counts.tiles + counts.tiles_dropped, 1), most.tiles),
         bricks=max(counts.bricks + counts.bricks_dropped, 1),
         leaves=max(counts.leaves_asked, 1),
         interior=max(counts.interior_asked, 1),
@@ -142,21 +176,24 @@ def capacity_for(counts: Counts, budget_bytes: int, keeps_slots: bool = False) -
         none = replace(capacity, **dict.fromkeys(one, 0)).nbytes(keeps_slots)
         return max(0, -(-(capacity.nbytes(keeps_slots) - budget_bytes) // (alone - none)))
 
-    cut = max(excess(wanted, bricks=1, leaves=1), wanted.leaves - LEAVES_MAX)
+    cut = max(excess(wanted, bricks=1, leaves=1), wanted.leaves - most.leaves)
+    cut = max(cut, wanted.bricks - most.bricks)
     cut = max(min(cut, wanted.leaves - 1, wanted.bricks - 1), 0)
     wanted = replace(wanted, bricks=wanted.bricks - cut, leaves=wanted.leaves - cut)
-    cut = max(excess(wanted, bricks=1, interior=1), wanted.interior - INTERIOR_MAX)
+    cut = max(excess(wanted, bricks=1, interior=1), wanted.interior - most.interior)
     cut = max(min(cut, wanted.interior - 1, wanted.bricks - 1), 0)
     return replace(wanted, bricks=wanted.bricks - cut, interior=wanted.interior - cut)
 
 
-def capacity_in_motion(counts: Counts, budget_bytes: int) -> Capacity:
+def capacity_in_motion(
+    counts: Counts, budget_bytes: int, storage_bytes: int = STORAGE_BLOCK_BYTES
+) -> Capacity:
     """Pools for a scene that moves and asked for this much: with room for more."""
     for slack in MOTION_SLACKS:
-        wanted = capacity_for(with_slack(counts, slack), 1 << 62, keeps_slots=True)
+        wanted = capacity_for(with_slack(counts, slack), 1 << 62, True, storage_bytes)
         if wanted.nbytes(keeps_slots=True) <= budget_bytes:
             return wanted
-    return capacity_for(with_slack(counts, MOTION_SLACKS[-1]), budget_bytes, keeps_slots=True)
+    return capacity_for(with_slack(counts, MOTION_SLACKS[-1]), budget_bytes, True, storage_bytes)
 
 
 def bricks_kept(capacity: Capacity, counts: Counts, one_leaf_level: bool, slots: bool) -> int:
@@ -177,6 +214,16 @@ def bricks_kept(capacity: Capacity, counts: Counts, one_leaf_level: bool, slots:
         if above_leaves > coarse:
             kept = min(kept, coarse)
     return kept
+
+
+def holds_all(capacity: Capacity, counts: Counts, one_leaf_level: bool, slots: bool) -> bool:
+    """Whether pools of a capacity hold everything that was asked for."""
+    return (
+        capacity.fragments >= counts.fragments + counts.fragments_dropped
+        and capacity.tiles >= counts.tiles + counts.tiles_dropped
+        and bricks_kept(capacity, counts, one_leaf_level, slots)
+        == counts.bricks + counts.bricks_dropped
+    )
 
 
 def is_worth_it(
