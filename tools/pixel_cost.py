@@ -1,8 +1,8 @@
 """What passes over the G-buffer cost a pixel: `python tools/pixel_cost.py [SCENE [CAMERA]]`.
 
-Nanoseconds of CPU time a pixel of a still frame with the program's defaults on a software driver,
-the least of ROUNDS frames, and their share of the frame. It says nothing of a GPU: see `elemental
-bench` there.
+Nanoseconds of CPU time a pixel of a frame, as of a still scene seen by a moving eye with the
+program's defaults on a software driver: the least of ROUNDS frames, and their share of the frame.
+It says nothing of a GPU: see `elemental bench` there.
 """
 
 from __future__ import annotations
@@ -50,6 +50,7 @@ def main() -> None:
     least = dict.fromkeys(GROUPS, float("inf"))
     for number in range(WARM_UP + ROUNDS):
         clock.ms.clear()
+        renderer.invalidate("view")
         renderer.render(stage.camera_at(0.0), 0.0, number)
         device.finish()
         if number >= WARM_UP:

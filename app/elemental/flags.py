@@ -159,9 +159,10 @@ def _add_bench_flags(parser: Parser) -> None:
     flag("--warmup", "N", whole(0, 10**6), 5, "frames to render before (default: 5)")
     parser.add_argument(
         "--rebuild",
-        choices=("none", "light", "geometry"),
+        choices=("none", "view", "light", "geometry"),
         default="none",
-        help="voxel work forced in each frame: none, relight, revoxelize (default: none)",
+        help="work forced in each frame: none, cones as of a moving view, relight, revoxelize "
+        "(default: none)",
     )
     flag("--time", "S", number(0, 1e6), 0.0, "scene time of the first frame, s (default: 0)")
     fps = "frames a second of scene time; 0 stands still (default: 30)"

@@ -53,7 +53,9 @@ def test_reload_takes_a_good_edit_and_survives_a_bad_one(device: Device, sources
     unchanged, replaced = device.program(other), device.program(shader)
 
     _touch(lib, "float brightness() { return 2.0; }\n")
+    before = device.library.version
     assert device.reload_changed_shaders() == []
+    assert device.library.version > before
     assert _value(device, shader) == 2
     assert device.program(other) is unchanged
     assert type(replaced.mgl.mglo).__name__ == "InvalidObject"  # released

@@ -2,27 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-
 from elemental.core.layout import Block
-from elemental.frame.views import SPECULAR_VIEWS
+from elemental.frame.gather import cone_split, gather
+from elemental.frame.request import Request, Systems
 from elemental.gpu.graph import Graph
-from elemental.gpu.refs import TextureHandle
-from elemental.passes.area_lights import AreaLightBlock
+from elemental.gpu.refs import AnyTexture
 from elemental.passes.camera_view import pack_view
-from elemental.passes.cone_trace.area_lights import trace_area_lights
-from elemental.passes.cone_trace.diffuse import SHARED_SPLIT, combine_diffuse, trace_diffuse
-from elemental.passes.cone_trace.interleave import SUB_IMAGES
-from elemental.passes.cone_trace.specular import Specular, SpecularCounters, trace_specular
 from elemental.passes.cone_trace.steps import STEP_VIEWS, step_view
 from elemental.passes.cone_trace.through import light_from_behind
-from elemental.passes.decal import Decals
 from elemental.passes.forward import draw_translucent
-from elemental.passes.gbuffer import GBuffer, draw_gbuffer
+from elemental.passes.gbuffer import draw_gbuffer
 from elemental.passes.light_cells import cull_to_view
 from elemental.passes.post.develop import develop
-from elemental.passes.post.history import PostHistory
 from elemental.passes.post.scale import drawn_size
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.shade import shade
@@ -31,64 +22,12 @@ from elemental.passes.sky import Sky
 from elemental.passes.ssao import SSAO_VIEWS, ssao_view
 from elemental.passes.surfaces import settle_surfaces
 from elemental.passes.views import CHANNELS, LIGHT_VIEWS, light_view, surface_view
-from elemental.passes.voxel.lighting import VoxelLighting
 from elemental.passes.voxel.octree import Octree
 from elemental.passes.voxel.view import VOXEL_VIEWS, voxel_view
-from elemental.scene.lights import Environment
-from elemental.scene.model import Camera, Light
 from elemental.settings import Settings
 
 
-@dataclass(frozen=True)
-class Systems:
-    """What lives between frames. ``voxels``: None where nothing asks for indirect light."""
-
-    meshes: GpuScene
-    decals: Decals
-    shadows: ShadowMaps
-    sky: Sky
-    area_lights: AreaLightBlock
-    voxels: VoxelLighting | None
-    specular: SpecularCounters
-    post: PostHistory
-
-
-@dataclass(frozen=True)
-class Request:
-    """What a frame shows: ``view`` is one of VIEWS, ``size`` (width, height) the picture's in px.
-
-    ``settings`` are this frame's, volumes blended in; ``spreads_gathers``: as `VoxelLighting`
-    means it.
-    """
-
-    camera: Camera
-    lights: Sequence[Light]
-    environment: Environment | None
-    settings: Settings
-    time_s: float
-    frame: int
-    view: str
-    size: tuple[int, int]
-    spreads_gathers: bool
-
-
-@dataclass(frozen=True)
-class Gathered:
-    """Indirect light by pixel: diffuse (H, W) irradiance / pi, and glossy. None: not asked for."""
-
-    diffuse: TextureHandle | None = None
-    specular: Specular | None = None
-
-    def image(self, name: str) -> TextureHandle | None:
-        """What the view of that name shows of it, if it does."""
-        if name == "diffuse_gi":
-            return self.diffuse
-        if name in SPECULAR_VIEWS and self.specular is not None:
-            return self.specular.traced or self.specular.radiance
-        return None
-
-
-def declare_frame(g: Graph, systems: Systems, request: Request) -> TextureHandle:
+def declare_frame(g: Graph, systems: Systems, request: Request) -> AnyTexture:
     """The passes of a frame. What the asked-for image does not need, the graph leaves out."""
     s, camera, name = request.settings, request.camera, request.view
     meshes = systems.meshes
@@ -115,9 +54,9 @@ def declare_frame(g: Graph, systems: Systems, request: Request) -> TextureHandle
         return light_view(g, view, gb, shadows, name, cells)
 
     if octree is not None and name in STEP_VIEWS:
-        block, split = systems.area_lights.block, _cone_split(s)
+        block, split = systems.area_lights.block, cone_split(s)
         return step_view(g, view, gb, octree, sky, block, split, name)
-    gathered = _gather(g, view, gb, systems, request, octree, ambient)
+    gathered = gather(g, view, gb, systems, request, octree, ambient)
     image = gathered.image(name)
     if image is not None:
         return image
@@ -180,50 +119,6 @@ def _light_voxels(
         request.settings["gi.bounces"],
         request.spreads_gathers,
     )
-
-
-def _gather(
-    g: Graph,
-    view: Block,
-    gb: GBuffer,
-    systems: Systems,
-    request: Request,
-    octree: Octree | None,
-    sky: Sky,
-) -> Gathered:
-    """Trace the cones of every pixel, if there is an octree. ``sky``: as surfaces gather it."""
-    if octree is None:
-        return Gathered()
-    s, name = request.settings, request.view
-    split = _cone_split(s)
-    block = systems.area_lights.block
-    shared = split == SHARED_SPLIT and s["gi.diffuse_pattern"] == 6
-    radiance = trace_diffuse(g, view, gb, octree, sky, split, shared)
-    area = None
-    if systems.area_lights.lights:
-        area = (trace_area_lights(g, view, gb, octree, block), block)
-    diffuse, broad = combine_diffuse(g, view, gb, radiance, split, area)
-    glossy = s["gi.specular"] and name != "diffuse_gi"
-    if not glossy and name not in SPECULAR_VIEWS:
-        return Gathered(diffuse)
-    specular = trace_specular(
-        g,
-        view,
-        gb,
-        octree,
-        sky,
-        block,
-        broad,
-        systems.specular,
-        adaptive=s["gi.specular_adaptive"],
-        show=name == "specular_traced",
-    )
-    return Gathered(diffuse, specular)
-
-
-def _cone_split(settings: Settings) -> int:
-    """Narrower cones that each diffuse cone is traced as."""
-    return int(settings["gi.diffuse_cones"]) // SUB_IMAGES
 
 
 def _tint(settings: Settings, intensity: str, color: str) -> tuple[float, float, float]:

@@ -11,12 +11,15 @@ import numpy as np
 import numpy.typing as npt
 
 from elemental.core.errors import InputError
-from elemental.frame.declare import Request, Systems, declare_frame
+from elemental.frame.declare import declare_frame
+from elemental.frame.request import Request, Systems
 from elemental.frame.views import LINEAR_VIEWS, OCTREE_VIEWS
 from elemental.gpu.device import Device
 from elemental.gpu.graph import Graph
+from elemental.gpu.refs import TextureHandle
 from elemental.gpu.resources import Buffer, Texture
 from elemental.passes.area_lights import AreaLightBlock
+from elemental.passes.cone_trace.held import HeldLight
 from elemental.passes.cone_trace.specular import SpecularCounters
 from elemental.passes.decal import Decals
 from elemental.passes.post.history import PostHistory
@@ -92,6 +95,7 @@ class Renderer:
         self._shadows = ShadowMaps(device, _shadow_settings(settings, scene.volumes))
         self._sky = Sky(device)
         self._voxels: VoxelLighting | None = None
+        self._held = HeldLight(device)
         self._specular = SpecularCounters()
         self.spreads_gathers = False
         """Whether further gathers of a moving scene are spread over frames, to keep up with it."""
@@ -105,8 +109,10 @@ class Renderer:
         self.size = (max(int(scale * width), 1), max(int(scale * height), 1))
 
     def invalidate(self, what: str) -> None:
-        """Rebuild the voxels of the "geometry", or only their "light", with the next frame."""
-        if self._voxels is not None:
+        """Have the next frame do what it could spare: rebuild the voxels of the "geometry", only
+        their "light", or gather the light of the "view" alone."""
+        self._held.forget()
+        if self._voxels is not None and what != "view":
             self._voxels.invalidate(what)
 
     def set_material(self, index: int, material: Material) -> None:
@@ -148,6 +154,7 @@ class Renderer:
         if self._voxels is not None:
             self._voxels.release()
             self._voxels = None
+            self._held.forget()
 
     def _fit_emission(self) -> None:
         """Have voxels made anew where materials emit more than they have room for."""
@@ -209,6 +216,7 @@ class Renderer:
         if self.looker is not None:
             self.looker(g)
         g.execute()
+        assert isinstance(image, TextureHandle), "what is held between frames is no picture"
         assert image.physical is not None, "a kept handle has a texture once its graph has run"
         culled = self._meshes.in_view.counters
         counted = (systems.voxels, self._specular, self._post.sprites)
@@ -223,6 +231,7 @@ class Renderer:
             sky=self._sky,
             area_lights=self._area_lights,
             voxels=self._prepare_voxels(view, time_s),
+            held=self._held,
             specular=self._specular,
             post=self._post,
         )
@@ -276,6 +285,7 @@ class Renderer:
     def release(self) -> None:
         """Free everything on the device."""
         self._drop_voxels()
+        self._held.release()
         self._post.release()
         self._decals.release()
         self._sky.release()

@@ -25,4 +25,6 @@ VIEWS: Mapping[str, str] = {
 
 LINEAR_VIEWS = frozenset({"scene_color", "diffuse_gi", "specular_gi", "voxels", *LIGHT_VIEWS})
 SPECULAR_VIEWS = frozenset({"specular_gi", "specular_traced"})
+HELD_VIEWS = frozenset({"final", "scene_color"})
+"""Views whose gathered light is held while they stand."""
 OCTREE_VIEWS = frozenset({"diffuse_gi", *SPECULAR_VIEWS, *STEP_VIEWS, *VOXEL_VIEWS})

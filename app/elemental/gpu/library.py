@@ -32,6 +32,8 @@ class ShaderLibrary:
         self._failures: dict[Shader, str] = {}
         self._snippets: dict[str, Snippet] = {}
         self._texts: dict[str, SnippetText] = {}
+        self.version = 0
+        """Counts the programs that replaced others."""
 
     def add_snippet(self, key: str, snippet: Snippet) -> None:
         """Say what ``snippets={...: key}`` of a description stands for. The first one stays."""
@@ -159,6 +161,7 @@ class ShaderLibrary:
             self._failures.pop(shader, None)
             self._programs[shader].release()
             self._programs[shader] = program
+            self.version += 1
             for file in program.files:
                 self._stamps.setdefault(file, _stamp(file))
             _log.info("reloaded %s", shader.name)

@@ -209,11 +209,13 @@ class PixelProbe:
         written = _written(g)
         found: dict[str, AnyTexture] = {}
         for resource in g.resources:
-            if isinstance(resource, TextureHandle) and resource.index in written:
-                if resource.index in g.kept:
-                    found[PICTURE_NAME] = resource
-                if resource.name in self.names and len(resource.size) == 2:
-                    found[resource.name] = resource
+            if not isinstance(resource, (Texture, TextureHandle)):
+                continue
+            if resource.index in g.kept:
+                found[PICTURE_NAME] = resource
+            holds = isinstance(resource, Texture) or resource.index in written
+            if holds and resource.name in self.names and len(resource.size) == 2:
+                found[resource.name] = resource
         for name, source in found.items():
             width, height = source.size[:2]
             texel = (

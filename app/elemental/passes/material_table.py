@@ -37,6 +37,8 @@ class MaterialTable:
         self._faults = device.buffer("scene.material_faults", none, "meshes", dynamic=True)
         self._faulty = none
         self._time_s = 0.0
+        self.version = 0
+        """Differs where any material looks otherwise, set or with time."""
         self._block = self._pack_frame()
         self._sort_out()
 
@@ -69,6 +71,7 @@ class MaterialTable:
 
     def set(self, index: int, material: Material) -> None:
         """Replace a material, here and in the scene."""
+        self.version += 1
         self._scene.materials[index] = self._adopt(material)
         packed = material_pack.pack_materials(self._scene.materials[index : index + 1])
         self.rows.write(packed.tobytes(), index * packed.nbytes)
@@ -87,6 +90,7 @@ class MaterialTable:
             self._time_s = time_s
             self._block = self._pack_frame()
             passing = list(self._ticking)
+            self.version += bool(passing)
         stale = [k for k, seen in self._revisions.items() if self._snippet(k).revision != seen]
         if not stale:
             return passing, []

@@ -6,7 +6,7 @@ from collections.abc import Collection
 
 from elemental.core.layout import Block
 from elemental.gpu.graph import Graph
-from elemental.gpu.refs import Ref, TextureHandle
+from elemental.gpu.refs import AnyTexture, Ref, TextureHandle
 from elemental.gpu.shaders import Compute
 from elemental.passes.gbuffer import GBuffer
 from elemental.passes.light_cells import ALL_LIGHTS, NO_CELLS, VIEW_CELLS, LightCells
@@ -49,8 +49,8 @@ def shade(
     cells: LightCells = NO_CELLS,
     models: Collection[str] = LIGHTING_MODELS,
     sky: Sky | None = None,
-    diffuse_gi: TextureHandle | None = None,
-    specular_gi: TextureHandle | None = None,
+    diffuse_gi: AnyTexture | None = None,
+    specular_gi: AnyTexture | None = None,
 ) -> TextureHandle:
     """Scene-referred radiance, (H, W) RGBA16F: `gb.scene_color` with light added in place.
 

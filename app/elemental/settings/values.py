@@ -18,6 +18,9 @@ SETTINGS: Mapping[str, Setting] = MappingProxyType(
     {setting.key: setting for setting in (*TABLE, *SURFACE_TABLE, *LENS_TABLE, *POST_TABLE)}
 )
 
+LIGHT_KEYS = tuple(setting.key for setting in (*TABLE, *SURFACE_TABLE))
+"""All but the post-processing effects'."""
+
 GROUP_TOLD = 3
 """How many settings of a group a refusal lists."""
 

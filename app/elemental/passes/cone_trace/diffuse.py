@@ -5,7 +5,7 @@ from __future__ import annotations
 from elemental.core.layout import Block
 from elemental.gpu.formats import RGBA16F
 from elemental.gpu.graph import Graph
-from elemental.gpu.refs import Ref, TextureHandle
+from elemental.gpu.refs import AnyTexture, Ref, TextureHandle
 from elemental.gpu.shaders import Compute
 from elemental.passes.cone_trace.interleave import part_groups, sub_image_groups, sub_images_size
 from elemental.passes.gbuffer import GBuffer
@@ -77,15 +77,16 @@ def combine_diffuse(
     radiance: TextureHandle,
     split: int,
     area: tuple[TextureHandle, Block] | None,
-) -> tuple[TextureHandle, TextureHandle]:
+    into: AnyTexture | None = None,
+) -> tuple[AnyTexture, AnyTexture]:
     """(irradiance / pi, radiance in a broad specular lobe), (H, W) RGBA16F.
 
     a: visibility of the sky. They differ by the light of ``area``: what `trace_area_lights` made,
-    and its AreaLights. ``split``: as for `trace_diffuse`.
+    and its AreaLights. ``split``: as for `trace_diffuse`; ``into``: what takes the first.
     """
     reads: dict[str, Ref] = {"u_radiance": radiance, "u_depth": gb.depth, "u_gbuffer_a": gb.a}
     params = {"View": view}
-    diffuse = broad = g.texture("diffuse_gi", like=gb.depth, format=RGBA16F)
+    diffuse = broad = into or g.texture("diffuse_gi", like=gb.depth, format=RGBA16F)
     writes: dict[str, Ref] = {"o_diffuse_gi": diffuse}
     if area is not None:
         reads["u_area_irradiance"], params["AreaLights"] = area

@@ -11,7 +11,7 @@ import numpy as np
 from elemental.core.layout import Block, layouts
 from elemental.gpu.formats import RGBA8, RGBA16F
 from elemental.gpu.graph import Graph
-from elemental.gpu.refs import BufferHandle, Ref, TextureHandle
+from elemental.gpu.refs import AnyTexture, BufferHandle, Ref, TextureHandle
 from elemental.gpu.shaders import Compute
 from elemental.passes.gbuffer import GBuffer
 from elemental.passes.sky import Sky
@@ -40,7 +40,7 @@ class Specular:
     RGBA8, which pixels have a cone of their own, where that was asked for.
     """
 
-    radiance: TextureHandle
+    radiance: AnyTexture
     traced: TextureHandle | None
 
 
@@ -93,20 +93,22 @@ def trace_specular(
     octree: Octree,
     sky: Sky,
     area_lights: Block,
-    broad_gi: TextureHandle,
+    broad_gi: AnyTexture,
     counters: SpecularCounters,
     *,
     adaptive: bool,
     show: bool = False,
+    into: AnyTexture | None = None,
 ) -> Specular:
     """One cone a pixel, as wide as the surface's specular lobe, but where its neighbours' will do.
 
     A broad lobe on a dim surface takes ``broad_gi``. With ``adaptive``, the pixels of a coarse
     grid are traced first and the others interpolated where these agree. What is to be traced is
-    listed and dispatched indirectly, so that every thread has a cone. ``show`` asks for `traced`.
+    listed and dispatched indirectly, so that every thread has a cone. ``show`` asks for `traced`;
+    ``into``: what takes `radiance`.
     """
     size = gb.depth.size[:2]
-    specular = g.texture("specular_gi", like=gb.depth, format=RGBA16F)
+    specular = into or g.texture("specular_gi", like=gb.depth, format=RGBA16F)
     traced = g.texture("specular.traced", like=gb.depth, format=RGBA8) if show else None
     shown: dict[str, Ref] = {} if traced is None else {"o_traced": traced}
     surface: dict[str, Ref] = {

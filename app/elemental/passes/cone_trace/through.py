@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from elemental.core.layout import Block
 from elemental.gpu.graph import Graph
-from elemental.gpu.refs import TextureHandle
+from elemental.gpu.refs import AnyTexture, TextureHandle
 from elemental.gpu.shaders import Compute
 from elemental.passes.gbuffer import GBuffer
 from elemental.passes.sky import Sky
@@ -19,7 +19,7 @@ def light_from_behind(
     gb: GBuffer,
     octree: Octree,
     sky: Sky,
-    diffuse_gi: TextureHandle,
+    diffuse_gi: AnyTexture,
 ) -> TextureHandle:
     """`gb.scene_color` once shaded, with half of the light that shone through taken from behind.
 

@@ -74,6 +74,8 @@ class VoxelLighting:
         self.counts = NOTHING
         self._built_version: int | None = None
         self._lit_by: Hashable = None
+        self.version = 0
+        """Counts the updates that changed what the octree holds."""
         self._regridded = False
         self._slice = 0
         self._unsettled = 0
@@ -183,6 +185,7 @@ class VoxelLighting:
             self._unsettled -= 1
         else:
             return self.octree
+        self.version += 1
         sided = self._kept.sided if self._kept is not None else None
         spread &= not whole
         cells = cull_to_world(g, shadows, self.octree.grid)
