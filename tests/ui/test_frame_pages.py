@@ -13,6 +13,8 @@ from imgui_bundle import imgui
 import panel_cost
 from elemental.core.images import read_exr
 from elemental.gpu.device import Device
+from elemental.ui.panel.buffers import memory_facts
+from elemental.ui.panel.graph import told
 from ui.robot import Robot
 
 Hands = Callable[..., Robot]
@@ -36,6 +38,8 @@ def test_the_graph_shows_passes_and_leads_to_a_target(hands: Hands, scene_file: 
     written = next(
         report.resources[k] for k in first.writes if report.resources[k].kind == "texture"
     )
+    width, height = written.size
+    assert told(first, report) == f"{width}x{height} {written.format}"
     robot.click(f"writes {written.name}")
     robot.frames(4)
     look = robot.desk.pages.buffers.look
@@ -75,7 +79,7 @@ def test_any_target_down_to_exact_values(
     robot.frames(2)
     saved = next(tmp_path.glob("elemental-scene_color-*.exr"))
     pixels = read_exr(saved)
-    height = pixels.shape[0]
+    height, width = pixels.shape[:2]
     assert np.array_equal(pixels[height - 1 - y, x], np.float32(inspector.probed.values[:3]))
     robot.click("Auto")
     robot.frames(3)
@@ -89,6 +93,16 @@ def test_any_target_down_to_exact_values(
     look = robot.desk.pages.buffers.look
     assert look is not None
     assert (look.channel, look.colors) == ("G", "False colour")
+    robot.click("freeze")
+    assert inspector.frozen
+    report = robot.desk.observers.report
+    assert report is not None
+    assert robot.sees("memory")
+    facts = dict(memory_facts(look.target, report))
+    assert facts["takes"] == f"{8 * width * height / 1024:,.0f} KiB"  # half floats
+    held = next(one for one in report.pool.held if f"{one.age:,}" == facts["age"])
+    assert held.age > 10
+    assert facts["at most"] >= facts["pool"] == f"{report.pool.bytes / 2**20:.1f} MiB"
 
 
 def test_the_wheel_zooms_about_the_mouse_and_fit_goes_back(hands: Hands, scene_file: Path) -> None:

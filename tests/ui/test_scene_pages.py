@@ -18,6 +18,7 @@ from imgui_bundle import imgui
 from elemental.core.images import read_png_jpeg_webp
 from elemental.scene.volumes import Volume, rotation_rows
 from elemental.ui.in_view import Lens, angles_of, outline, placed, placement
+from elemental.ui.panel.sequence import left_text
 from elemental.ui.sequence_job import SequenceWords
 from ui.conftest import PICTURE
 from ui.robot import Robot
@@ -102,6 +103,37 @@ def test_the_gizmo_moves_a_volume_in_one_step(hands: Hands, scene_file: Path) ->
     assert desk.document.state.volumes[0].center == (0.0, 1.0, 0.0)
 
 
+def test_the_gizmo_scales_a_volume_in_one_step(hands: Hands, scene_file: Path) -> None:
+    robot = hands(scene_file, page="Volumes", size=TALL)
+    desk = robot.desk
+    box = Volume("v", center=(0.0, 1.0, 0.0), size=(1.0, 1.0, 1.0))
+    desk.document.set_volumes((box,), "add v")
+    robot.frames(2)
+    robot.click("gizmo")
+    robot.click("gizmo=Scale")
+    steps = desk.document.steps
+    lens = Lens.of(desk.camera, desk.stage.scene.bounds(), desk.place)
+    center = np.array([[0.0, 1.0, 0.0]])
+    x, y, *_ = lens.lines(center, center)[0]
+    robot.move(x, y)  # the middle scales along all axes
+    robot.frames()
+    assert desk.wants_mouse
+    robot.button(True)
+    for pixels in (10, 20, 40):
+        robot.move(x + pixels, y)
+    robot.button(False)
+    robot.frames(2)
+    size = desk.document.state.volumes[0].size
+    assert size[0] > 1.1
+    assert size == pytest.approx((size[0],) * 3)
+    assert desk.document.state.volumes[0].center == box.center
+    assert desk.document.steps == steps + 1
+    table = saved(robot, scene_file)["volumes"][0]  # type: ignore[index]
+    assert table["size"] == list(size)
+    desk.act("undo")
+    assert desk.document.state.volumes == (box,)
+
+
 def test_a_material_is_changed_saved_and_undone(hands: Hands, scene_file: Path) -> None:
     robot = hands(scene_file, page="Materials", size=TALL)
     before = robot.pixels()
@@ -159,7 +191,12 @@ def test_a_sequence_is_rendered_stopped_and_gone_on_with(
     assert desk.job is not None
     while desk.job.done < 2:
         robot.frames()
+    left = desk.job.seconds_left
+    assert left is not None
+    assert left > 0.0
+    assert left_text(desk.job).endswith(" left")
     robot.click("stop")
+    assert left_text(desk.job) == ""
     assert desk.job.is_over
     made = len(list(folder.glob("*.png")))
     assert 2 <= made < 12

@@ -43,6 +43,10 @@ BINDINGS = (
     Binding("fly.slow", "hold", ("LEFT_ALT",), "fly four times slower"),
     Binding("fly.look", "mouse", ("Mouse drag",), "look around, left or right button"),
     Binding("fly.speed", "mouse", ("Mouse wheel",), "flying speed"),
+    Binding("panel.type", "mouse", ("Ctrl+click",), "type a number into a slider of the panel"),
+    Binding(
+        "panel.zoom", "mouse", ("Wheel over a page",), "scroll it; zoom into Graph and Buffers"
+    ),
     Binding("camera.pick", "press", tuple("123456789"), "go to that camera of the scene"),
     Binding(
         "camera.home", "press", ("HOME", "0"), "go back to the first view, or onto the camera path"

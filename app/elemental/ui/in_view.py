@@ -24,6 +24,8 @@ OPERATIONS = {
     "Rotate": gizmo.OPERATION.rotate,
     "Scale": gizmo.OPERATION.scale,
 }
+GIZMO_SIZE = 0.17
+"""Of the picture's height, about; ImGuizmo's own 0.1 is hard to hit in a docked view."""
 SMALLEST_M = 1e-3
 CIRCLE_STEPS = 48
 LEAST_W = 1e-4
@@ -134,6 +136,7 @@ def draw_gizmo(lens: Lens, volume: Volume, mode: str) -> Volume | None:
     gizmo.set_rect(left, top, right - left, bottom - top)
     gizmo.set_orthographic(False)
     gizmo.allow_axis_flip(False)
+    gizmo.set_gizmo_size_clip_space(GIZMO_SIZE)
     held = _matrix(placement(volume))
     frame = gizmo.MODE.world if mode == "Move" else gizmo.MODE.local
     used = gizmo.manipulate(

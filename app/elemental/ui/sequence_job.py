@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -49,12 +50,21 @@ class SequenceJob:
         self.done = self.rendered = 0
         self.folder = words.folder
         self.newest = ""
+        self._began = time.perf_counter()
         self._steps: Iterator[Step] | None = sequence.render(device, overwrite=words.overwrite)
 
     @property
     def is_over(self) -> bool:
         """Whether no frame is left, or it was stopped."""
         return self._steps is None
+
+    @property
+    def seconds_left(self) -> float | None:
+        """At the pace of the frames that were made; None before the first of them."""
+        if not self.rendered:
+            return None
+        passed = time.perf_counter() - self._began
+        return passed / self.rendered * (self.count - self.done)
 
     def advance(self) -> None:
         """Make one frame. Raises InputError where it can't be written; the job is over then."""

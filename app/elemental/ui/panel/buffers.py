@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -24,8 +25,14 @@ LEAST_LIST_EM = 8.0
 """Where that is less, in heights of the text, they drop down."""
 FIRST_TARGET = "scene_color"
 """Looked at until another is chosen."""
-LINES_BELOW, WIDE_LINE_EM = 3, 32.0
-"""Lines of values below the picture, where it is narrower than so many heights of the text."""
+VALUES_EM = 45.0
+"""Width of the figures below the picture, in heights of the text, if all stand on one line."""
+MEMORY_LINES = 4
+"""Of figures below the list of targets, where it is at least twice as high."""
+MEMORY_HELP = (
+    "age: frames since its memory was allocated; reused: how often it was handed out again; "
+    "pool: what all transient targets hold, and the most that they ever held"
+)
 LEAST_PICTURE_EM = 5.0
 ZOOM_PER_NOTCH = 1.25
 LARGEST_TEXEL_PX = 64.0
@@ -125,8 +132,9 @@ def _list(w: Widgets, view: BufferView, report: GraphReport | None) -> None:
     view.searched = w.search("search", view.searched)
     if report is None:
         return
-    if imgui.begin_child("names"):
-        ages = {held.memory: held for held in report.pool.held}
+    memory = MEMORY_LINES * imgui.get_text_line_height_with_spacing()
+    tells = imgui.get_content_region_avail().y > 2.0 * memory and view.look is not None
+    if imgui.begin_child("names", imgui.ImVec2(0.0, -memory if tells else 0.0)):
         for target, resource in targets_of(report):
             if view.searched.lower() not in target.name.lower():
                 continue
@@ -135,13 +143,12 @@ def _list(w: Widgets, view: BufferView, report: GraphReport | None) -> None:
             if imgui.selectable(label, chosen)[0]:
                 choose(view, target)
             w.note(target.name)
-            if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip.value):
-                held = ages.get(resource.memory)
-                pooled = (
-                    f"\npool: age {held.age} frames, reused {held.reuses} times" if held else ""
-                )
-                imgui.set_tooltip(describe(resource) + pooled)
+            w.tooltip(describe(resource))
     imgui.end_child()
+    if tells and view.look is not None:
+        imgui.separator()
+        w.facts("memory", memory_facts(view.look.target, report))
+        w.tooltip(MEMORY_HELP)
 
 
 def describe(resource: GraphResource) -> str:
@@ -159,11 +166,11 @@ def _controls(w: Widgets, view: BufferView, look: Look, inspector: Inspector, sa
     channels = list(CHANNELS)
     if look.target.format == "D24S8":
         channels = ["R", STENCIL]
-    channel = w.choose("channel", look.channel, channels, 7.0 * em)
-    w.flow(7.5 * em)
-    colors = w.choose("colours", look.colors, COLORS, 7.5 * em)
-    w.flow(10.0 * em)
-    imgui.set_next_item_width(10.0 * em)
+    channel = w.choose("channel", look.channel, channels, 6.5 * em)
+    w.flow(7.0 * em)
+    colors = w.choose("colours", look.colors, COLORS, 7.0 * em)
+    w.flow(8.0 * em)
+    imgui.set_next_item_width(8.0 * em)
     ranged, (low, high) = imgui.drag_float2("##range", [look.low, look.high], 0.01, 0, 0, "%.4g")
     w.note("range")
     w.tooltip("values shown as black and white")
@@ -220,7 +227,7 @@ def _picture(w: Widgets, view: BufferView, inspector: Inspector) -> None:
     look = view.look
     assert look is not None
     room = imgui.get_content_region_avail()
-    lines = LINES_BELOW if room.x < WIDE_LINE_EM * imgui.get_font_size() else 1
+    lines = math.ceil(VALUES_EM * imgui.get_font_size() / max(room.x, 1.0))
     line = lines * imgui.get_text_line_height_with_spacing() + imgui.get_style().item_spacing.y
     least = LEAST_PICTURE_EM * imgui.get_font_size()
     size = (max(int(room.x), 1), max(int(room.y - line), int(least)))
@@ -281,3 +288,21 @@ def _values(w: Widgets, look: Look, inspector: Inspector, size: tuple[int, int])
         digits = [f"{n:,}" if isinstance(n, int) else f"{n:.6g}" for n in numbers]
         facts += [(name, digit) for name, digit in zip("RGBA", digits, strict=False)]
     w.facts("values", facts)
+
+
+def memory_facts(target: Target, report: GraphReport) -> list[tuple[str, str]]:
+    """What a target takes, how long that is held and how often it was reused; the whole pool."""
+    found = dict(targets_of(report)).get(target)
+    if found is None:
+        return []
+    facts = [("takes", f"{found.nbytes / KIB:,.0f} KiB")]
+    held = next((one for one in report.pool.held if one.memory == found.memory), None)
+    if held is None:
+        facts.append(("", "not of the pool"))
+    else:
+        facts += [("age", f"{held.age:,}"), ("reused", f"{held.reuses:,}")]
+    return [
+        *facts,
+        ("pool", f"{report.pool.bytes / KIB**2:.1f} MiB"),
+        ("at most", f"{report.pool.high_water / KIB**2:.1f} MiB"),
+    ]

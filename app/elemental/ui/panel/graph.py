@@ -16,7 +16,7 @@ from elemental.ui.panel.buffers import KIB, describe
 from elemental.ui.panel.timeline import hues_of, system_of
 from elemental.ui.widgets import Widgets
 
-BOX = (11.0, 2.7)
+BOX = (13.0, 2.7)
 """Of a pass, in heights of the text."""
 GAP = (3.0, 0.7)
 """Between boxes."""
@@ -122,7 +122,7 @@ def _canvas(w: Widgets, view: GraphView, report: GraphReport) -> None:
             continue
         over = hovered and x <= mouse.x < far[0] and y <= mouse.y < far[1]
         hue = theme.packed(hues[system_of(item.name)], 1.0 if number == chosen else 0.75)
-        _box(w, canvas, item, (x, y, *far), hue, number == chosen or over)
+        _box(w, canvas, item, told(item, report), (x, y, *far), hue, number == chosen or over)
         if over and clicked:
             view.chosen = item.name
 
@@ -157,6 +157,7 @@ def _box(
     w: Widgets,
     canvas: imgui.ImDrawList,
     item: GraphPass,
+    made: str,
     place: tuple[float, float, float, float],
     hue: int,
     lit: bool,
@@ -178,12 +179,20 @@ def _box(
         w.fonts.text, 0.9 * size, imgui.ImVec2(x, top + 0.3 * size), theme.packed(theme.TEXT),
         item.name,
     )  # fmt: skip
-    extent = "x".join(map(str, item.extent))
     canvas.add_text(
         w.fonts.figures, 0.8 * size, imgui.ImVec2(x, top + 1.45 * size),
-        theme.packed(theme.MUTED), f"{item.gpu_ms:.3f} ms  {extent}",
+        theme.packed(theme.MUTED), f"{item.gpu_ms:.3f} ms {made}",
     )  # fmt: skip
     canvas.pop_clip_rect()
+
+
+def told(item: GraphPass, report: GraphReport) -> str:
+    """What a pass makes, in short: size and format of its first target, else of a buffer."""
+    written = [report.resources[number] for number in item.writes]
+    target = next((one for one in written if one.kind == "texture"), None)
+    if target is not None:
+        return f"{'x'.join(map(str, target.size))} {target.format}"
+    return f"{written[0].nbytes / KIB:,.1f} KiB" if written else ""
 
 
 def _detail(w: Widgets, view: GraphView, report: GraphReport) -> str | None:

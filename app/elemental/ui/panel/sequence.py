@@ -31,12 +31,20 @@ def sequence_page(
     """Draw the page; "sequence.start", "sequence.stop" and "screenshot" are asked of ``act``."""
     _buttons(w, job, act)
     if job is not None:
-        text = f"{job.done} of {job.count}   {job.newest}"
+        text = f"{job.done} of {job.count}   {job.newest}{left_text(job)}"
         imgui.progress_bar(job.done / max(job.count, 1), imgui.ImVec2(-1.0, 0.0), text)
         w.note("progress")
         if not job.is_over:
             return words
     return _words(w, words)
+
+
+def left_text(job: SequenceJob) -> str:
+    """How long a running sequence still takes, where that can be told."""
+    if job.is_over or job.seconds_left is None:
+        return ""
+    minutes, seconds = divmod(round(job.seconds_left), 60)
+    return f"   {minutes}:{seconds:02d} left"
 
 
 def _buttons(w: Widgets, job: SequenceJob | None, act: Callable[[str], None]) -> None:
