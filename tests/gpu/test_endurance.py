@@ -10,6 +10,7 @@ from pathlib import Path
 from cli.small_scene import write_corner
 from elemental.frame import Renderer
 from elemental.gpu.device import Device
+from elemental.gpu.recall import GENERATION
 from elemental.session import Stage, Viewpoint, set_stage
 from endurance.storm import LARGEST, Storm, resident_bytes
 
@@ -53,7 +54,7 @@ def test_a_window_that_is_resized_on_and_on_fills_no_cache(device: Device, tmp_p
     renderer = Renderer(device, stage.scene, stage.settings, LARGEST)
     seen = []
     for turn in range(3):
-        for step in range(40):
+        for step in range(3 * GENERATION):
             renderer.resize((1 + step, 17 + 30 * turn))  # no size twice
             renderer.render(stage.camera, 0.0, step)
             device.finish()

@@ -318,7 +318,7 @@ def test_sampler_arrays_and_explicit_sampling(device: Device, sources: Sources) 
     values = device.buffer("values", 12)
     graph = device.begin_frame()
     reads = {
-        "u_images": [Sampled(image, "nearest", "repeat"), image],
+        "u_images": (Sampled(image, "nearest", "repeat"), image),
         "u_border": Sampled(image, wrap="border", border=8.0),
     }
     graph.compute(shader, reads=reads, writes={"Values": values}, groups=1)

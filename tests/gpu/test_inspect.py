@@ -37,7 +37,7 @@ def shown(device: Device, inspector: Inspector, texture: Texture, look: Look) ->
     """(H, W, 3) float codes of the picture, row 0 at the bottom; a frame that has the texture."""
     inspector.look = look
     g = device.begin_frame()
-    g._index(texture)
+    g.keep(texture)
     inspector.add(g)
     g.execute()
     device.finish()

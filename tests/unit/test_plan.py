@@ -41,9 +41,8 @@ def plan(passes: list[P], kept: str = "", persistent: str = "") -> tuple[Schedul
     table = "".join(sorted({x for p in passes for x in p.r + p.m + p.o} | set(kept + persistent)))
     for p in passes:
         p.table = table
-    result = schedule(
-        passes, list(table), {table.index(x) for x in persistent}, {table.index(x) for x in kept}
-    )
+    outlives, outputs = ([table.index(x) for x in names] for names in (persistent, kept))
+    result = schedule(passes, table.__getitem__, outlives, outputs)
     return result, " ".join(passes[i].name for i in result.order)
 
 

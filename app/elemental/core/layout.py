@@ -207,8 +207,10 @@ class Layouts:
 
 
 def pack(dtype: np.dtype[np.void], **fields: npt.ArrayLike) -> npt.NDArray[np.void]:
-    """One record of a layout; see ``pack_array``. Returns a 0-d structured array."""
-    return _fill(np.zeros((), dtype), dtype, fields, ())
+    """One record of a layout; see ``pack_array``. Returns a 0-d structured array, read-only."""
+    record = _fill(np.zeros((), dtype), dtype, fields, ())
+    record.flags.writeable = False
+    return record
 
 
 def pack_array(

@@ -6,9 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from elemental.gpu.binding import BlockLook, GraphError, SamplerLook, TexelsLook
+from elemental.gpu.binding import BlockLook, GraphError, Look, SamplerLook, TexelsLook
 from elemental.gpu.gl import MAX_WORK_GROUPS
-from elemental.gpu.passes import Attachment, RasterPass
 from elemental.gpu.program import Program
 from elemental.gpu.refs import AnyTexture, ImageRef, Layer, Mip
 
@@ -69,15 +68,17 @@ def group_counts(
     )
 
 
-def refuse_feedback(node: RasterPass, attached: Attachment, name: str) -> None:
-    """Raise GraphError where a pass reads the very level and layer that it renders to.
+def refuse_feedback(
+    name: str, bindings: Sequence[tuple[Look, object]], attached: tuple[AnyTexture, int, int]
+) -> None:
+    """Raise GraphError where pass ``name`` reads the very level and layer that it renders to.
 
     GL leaves the result undefined, with the writes of depth off, too [GL 4.3, 9.3.1: only texture
     barriers, of GL 4.5, define it]; software drivers hide it.
     """
-    index, target_level, target_layer = attached
-    for look, resource in node.bindings:
-        if resource != index or isinstance(look, (BlockLook, TexelsLook)):
+    texture, target_level, target_layer = attached
+    for look, resource in bindings:
+        if resource is not texture or isinstance(look, (BlockLook, TexelsLook)):
             continue
         if isinstance(look, SamplerLook):
             _, level, levels, layer, _ = look.view or (0, 0, _ALL_LEVELS, -1, False)
@@ -85,4 +86,4 @@ def refuse_feedback(node: RasterPass, attached: Attachment, name: str) -> None:
             level, levels, layer = look.level, 1, -1 if look.layered else look.layer
         same_level = level <= target_level < level + levels
         if same_level and (layer == target_layer or -1 in (layer, target_layer)):
-            raise GraphError(f"{node.name}: {name} is rendered to and read in one pass")
+            raise GraphError(f"{name}: {texture.name} is rendered to and read in one pass")

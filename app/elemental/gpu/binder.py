@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from elemental.gpu import gl as c
-from elemental.gpu.binding import BlockLook, ImageLook, Look, SamplerLook, TexelsLook
+from elemental.gpu.binding import BlockLook, ImageLook, Look, SamplerLook
 from elemental.gpu.refs import SamplerKey, sampler_parameters
-from elemental.gpu.resources import Texture
+
+Binding = tuple[int, Callable[..., None], tuple[Any, ...]]
+"""(place, how to bind, with what): nothing is to be done where the place has the same already."""
+
+_TEXTURES, _SAMPLERS, _IMAGES, _STORAGE, _UNIFORM = range(0, 5 * 256, 256)
+"""First places of texture units, their samplers, image units and block bindings."""
+_BLOCKS = {c.SHADER_STORAGE_BUFFER: _STORAGE, c.UNIFORM_BUFFER: _UNIFORM}
 
 
 class Binder:
@@ -19,60 +25,65 @@ class Binder:
         self.gl = gl
         self._max_anisotropy = max_anisotropy
         self._samplers: dict[SamplerKey, int] = {}
-        self._units: dict[int, int] = {}
-        self._unit_samplers: dict[int, int] = {}
-        self._images: dict[int, tuple[int, ...]] = {}
-        self._blocks: dict[tuple[int, int], int] = {}
+        self._held: dict[int, tuple[Any, ...]] = {}
         self._active_unit = -1
 
     def forget(self) -> None:
         """Assume nothing about the context: other code may have bound things."""
-        self._units.clear()
-        self._unit_samplers.clear()
-        self._images.clear()
-        self._blocks.clear()
+        self._held.clear()
         self._active_unit = -1
 
-    def bind(self, bindings: Sequence[tuple[Look, int]], physical: Sequence[Any]) -> None:
-        """Bind textures, images and blocks, skipping what is bound already."""
-        gl = self.gl
-        for look, resource in bindings:
-            if look.__class__ is SamplerLook:
-                self._bind_sampler(look, physical[resource])
-            elif look.__class__ is BlockLook:
-                glo = physical[resource].glo
-                place = (look.target, look.unit)
-                if self._blocks.get(place) != glo:
-                    self._blocks[place] = glo
-                    gl.glBindBufferBase(look.target, look.unit, glo)
-            elif look.__class__ is TexelsLook:
-                self._bind_texture(look.unit, c.TEXTURE_BUFFER, physical[resource].as_texels())
-            elif look.__class__ is ImageLook:
-                self._bind_image(look, physical[resource])
+    def prepare(self, looks: Sequence[tuple[Look, Any]]) -> list[Binding]:
+        """What ``bind`` takes, for physical resources as they are looked at."""
+        bindings: list[Binding] = []
+        for look, resource in looks:
+            unit = look.unit
+            if isinstance(look, SamplerLook):
+                glo = resource.glo if look.view is None else resource.view(*look.view)
+                sampler = self._samplers.get(look.sampler) or self._make_sampler(look.sampler)
+                bindings.append((_TEXTURES + unit, self._texture, (unit, look.target, glo)))
+                bindings.append((_SAMPLERS + unit, self._sampler, (unit, sampler)))
+            elif isinstance(look, ImageLook):
+                glo = resource.glo if look.view is None else resource.view(*look.view)
+                part = (unit, glo, look.level, look.layered, look.layer, look.access, look.format)
+                bindings.append((_IMAGES + unit, self._image, part))
+            elif isinstance(look, BlockLook):
+                place = _BLOCKS[look.target] + unit
+                bindings.append((place, self._block, (look.target, unit, resource.glo)))
+            else:
+                texels = (unit, c.TEXTURE_BUFFER, resource.as_texels())
+                bindings.append((_TEXTURES + unit, self._texture, texels))
+        return bindings
 
-    def _bind_sampler(self, look: SamplerLook, texture: Texture) -> None:
-        unit = look.unit
-        glo = texture.glo if look.view is None else texture.view(*look.view)
-        self._bind_texture(unit, look.target, glo)
-        sampler = self._samplers.get(look.sampler) or self._make_sampler(look.sampler)
-        if self._unit_samplers.get(unit) != sampler:
-            self._unit_samplers[unit] = sampler
-            self.gl.glBindSampler(unit, sampler)
+    def bind(self, bindings: Sequence[Binding]) -> None:
+        """Bind what is not bound already."""
+        held = self._held
+        for place, bind, arguments in bindings:
+            if held.get(place) != arguments:
+                held[place] = arguments
+                bind(*arguments)
 
-    def _bind_texture(self, unit: int, target: int, glo: int) -> None:
-        if self._units.get(unit) != glo:
-            self._units[unit] = glo
-            if self._active_unit != unit:
-                self._active_unit = unit
-                self.gl.glActiveTexture(c.TEXTURE0 + unit)
-            self.gl.glBindTexture(target, glo)
+    def bind_params(self, unit: int, glo: int, offset: int, size: int) -> None:
+        """Bind a range of the parameter ring to a uniform block."""
+        place, arguments = _UNIFORM + unit, (c.UNIFORM_BUFFER, unit, glo, offset, size)
+        if self._held.get(place) != arguments:
+            self._held[place] = arguments
+            self.gl.glBindBufferRange(*arguments)
 
-    def _bind_image(self, look: ImageLook, texture: Texture) -> None:
-        glo = texture.glo if look.view is None else texture.view(*look.view)
-        wanted = (glo, look.level, look.layered, look.layer, look.access, look.format)
-        if self._images.get(look.unit) != wanted:
-            self._images[look.unit] = wanted
-            self.gl.glBindImageTexture(look.unit, *wanted)
+    def _texture(self, unit: int, target: int, glo: int) -> None:
+        if self._active_unit != unit:
+            self._active_unit = unit
+            self.gl.glActiveTexture(c.TEXTURE0 + unit)
+        self.gl.glBindTexture(target, glo)
+
+    def _sampler(self, unit: int, glo: int) -> None:
+        self.gl.glBindSampler(unit, glo)
+
+    def _image(self, *arguments: int) -> None:
+        self.gl.glBindImageTexture(*arguments)
+
+    def _block(self, target: int, unit: int, glo: int) -> None:
+        self.gl.glBindBufferBase(target, unit, glo)
 
     def texture_unit_changed(self) -> None:
         """The active texture unit was changed by an upload or an allocation."""
@@ -96,11 +107,6 @@ class Binder:
         if limit > 1:
             gl.glSamplerParameterf(glo, c.TEXTURE_MAX_ANISOTROPY, limit)
         return glo
-
-    def bind_params(self, unit: int, glo: int, offset: int, size: int) -> None:
-        """Bind a range of the parameter ring to a uniform block."""
-        self._blocks.pop((c.UNIFORM_BUFFER, unit), None)
-        self.gl.glBindBufferRange(c.UNIFORM_BUFFER, unit, glo, offset, size)
 
     def release(self) -> None:
         """Free the samplers."""

@@ -170,7 +170,7 @@ def looks(slot: Slot, ref: Ref, program: Program) -> Sequence[Bound]:
 
 
 def _elements(slot: Slot, ref: Ref, program: Program) -> list[Bound]:
-    elements = ref if isinstance(ref, (list, tuple)) else (ref,)
+    elements: Sequence[Any] = ref if type(ref) is tuple else (ref,)  # no words, which are tuples
     if slot.active and len(elements) != slot.count:
         raise GraphError(
             f"{program.shader!r}: {slot.name} takes {slot.count} textures, {len(elements)} given"

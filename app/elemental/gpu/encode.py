@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import moderngl
 
 from elemental.gpu import gl as c
-from elemental.gpu.binding import GraphError, Look, looks, require_all
-from elemental.gpu.refs import AnyBuffer, BufferHandle, Ref, TextureHandle
+from elemental.gpu.binding import GraphError, looks, require_all
+from elemental.gpu.refs import AnyBuffer, AnyHandle, BufferHandle, Ref
 from elemental.gpu.resources import Buffer, VertexInput
 from elemental.gpu.state import RasterState
 
@@ -34,7 +34,7 @@ class Encoder:
 
     def __init__(self, executor: Executor, node: RasterPass) -> None:
         self._executor, self._node = executor, node
-        self._missing = set(node.missing)
+        self._missing = set(node.uses.missing)
         self._seen: set[tuple[int, int]] = set()
 
     def bind(self, name: str, ref: Ref) -> None:
@@ -49,16 +49,12 @@ class Encoder:
         self._missing.discard(name)
         if not slot.active:
             return
-        bindings: list[tuple[Look, int]] = []
-        physical: list[Any] = []
-        for number, (look, resource) in enumerate(looks(slot, ref, program)):
-            bindings.append((look, number))
-            if isinstance(resource, (TextureHandle, BufferHandle)):
-                physical.append(resource.physical)
-            else:
-                physical.append(resource)
-        self._executor.barrier([(resource, bindings[0][0].barrier, False) for resource in physical])
-        self._executor.binder.bind(bindings, physical)
+        bound = [
+            (look, resource.physical if isinstance(resource, AnyHandle) else resource)
+            for look, resource in looks(slot, ref, program)
+        ]
+        self._executor.barrier([(resource, look.barrier, 0) for look, resource in bound])
+        self._executor.binder.bind(self._executor.binder.prepare(bound))
 
     def set(self, **changes: Any) -> None:
         """Change fields of the pass's RasterState for the draws that follow."""

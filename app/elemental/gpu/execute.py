@@ -10,20 +10,22 @@ from typing import TYPE_CHECKING, Any
 from elemental.gpu import gl as c
 from elemental.gpu import state as raster_state
 from elemental.gpu.binder import Binder
+from elemental.gpu.binding import GraphError
 from elemental.gpu.encode import Encoder
+from elemental.gpu.frame_plan import FramePlan
 from elemental.gpu.graph_report import describe
 from elemental.gpu.passes import (
     ClearBuffer,
     ClearTexture,
     ComputePass,
     Copy,
-    Pass,
     RasterPass,
     Readback,
 )
-from elemental.gpu.plan import Hazards, schedule
+from elemental.gpu.plan import Hazards
 from elemental.gpu.pool import TargetPool
-from elemental.gpu.refs import BufferHandle, TextureHandle
+from elemental.gpu.recall import Recall
+from elemental.gpu.refs import AnyHandle
 from elemental.gpu.resources import Buffer, Texture
 from elemental.gpu.shape import TextureDesc
 from elemental.gpu.targets import Framebuffers
@@ -34,7 +36,7 @@ if TYPE_CHECKING:
 
 
 class Executor:
-    """Runs graphs; owns the pool, the hazards, samplers and framebuffers of a device."""
+    """Runs graphs; owns the pool, what frames share, hazards, samplers and framebuffers."""
 
     def __init__(self, device: Device) -> None:
         self.device = device
@@ -43,9 +45,9 @@ class Executor:
         self.binder = Binder(device.gl, device.max_anisotropy)
         self.framebuffers = Framebuffers(device.gl)
         self.pool: TargetPool[Texture | Buffer] = TargetPool(self._make)
-        self._kept: list[tuple[Hashable, Texture | Buffer, TextureHandle | BufferHandle]] = []
+        self.recall = Recall()
+        self._kept: Sequence[AnyHandle] = ()
         self._encoded: dict[str, bytes] = {}
-        self._physical: list[Any] = []
         self._state: raster_state.RasterState | None = None
         self._params = (0, 0)
         self._run = {
@@ -67,77 +69,94 @@ class Executor:
 
     def return_kept(self) -> None:
         """Give the outputs of the last frame back to the pool."""
-        for description, physical, handle in self._kept:
-            handle.physical = None
-            self.pool.give_back(description, physical)
-        self._kept.clear()
+        for handle in self._kept:
+            self._give_back(handle)
+        self._kept = ()
 
     def run(self, graph: Graph) -> None:
         """Plan and run one frame."""
         device, gl = self.device, self.gl
-        passes, resources = graph.passes, graph.resources
-        names = [resource.name for resource in resources]
-        plan = schedule(passes, names, graph.persistent, graph.kept)
-        physical: list[Any] = list(resources)
-        self._physical = physical
-        held: set[int] = set()
-        self.binder.forget()
-        self._state = None
-        self._params = device.params.upload()
-        gl.glDisable(c.SCISSOR_TEST)
-        queries = device.timers.begin(len(plan.order))
+        plan = self._plan(graph)
+        self._assign(plan)
+        passes = [graph.passes[index] for index in plan.schedule.order]
+        queries: list[int] = []
         cpu_ms: list[float] = []
-        ran: list[str] = []
-        started = time.perf_counter()
         try:
-            for position, index in enumerate(plan.order):
-                for born in plan.births[position]:
-                    physical[born] = self._acquire(resources[born])
-                    held.add(born)
-                node = passes[index]
+            plan.bind(self.binder, self.framebuffers)
+            self._label(plan)
+            self.binder.forget()
+            self._state = None
+            self._params = device.params.upload()
+            gl.glDisable(c.SCISSOR_TEST)
+            queries = device.timers.begin(len(passes))
+            started = time.perf_counter()
+            for node, bound, query in zip(passes, plan.bound, queries, strict=False):
                 self._push(node.name)
-                gl.glQueryCounter(queries[position], c.TIMESTAMP)
-                self.barrier([(physical[r], bit, write) for r, bit, write in node.accesses])
-                self._run[type(node)](node)
-                gl.glPopDebugGroup()
-                for dead in plan.deaths[position]:
-                    held.discard(dead)
-                    self._give_back(resources[dead], physical[dead])
-                ran.append(node.name)
+                gl.glQueryCounter(query, c.TIMESTAMP)
+                try:
+                    node.bound = bound
+                    self.barrier(bound.accesses)
+                    self._run[type(node)](node)
+                finally:
+                    gl.glPopDebugGroup()
                 now = time.perf_counter()
                 cpu_ms.append((now - started) * 1e3)
                 started = now
+            gl.glQueryCounter(queries[-1], c.TIMESTAMP)
+            if device.wants_report:
+                device.wants_report = False
+                device.graph_report = describe(device, graph, plan.schedule)
         except BaseException:
-            if len(ran) < len(plan.order):
-                gl.glPopDebugGroup()
-            for index in held:
-                self._give_back(resources[index], physical[index])
+            for handle in plan.kept:
+                self._give_back(handle)
             device.timers.discard(queries)
             raise
-        gl.glQueryCounter(queries[-1], c.TIMESTAMP)
-        for index in held:
-            handle = resources[index]
-            assert isinstance(handle, (TextureHandle, BufferHandle))
-            self._kept.append((_description(handle), physical[index], handle))
+        finally:
+            for handle in plan.passing:
+                handle.physical = None
+        self._kept = plan.kept
         assert self.pool.stats.in_use == len(self._kept), "a target was not given back"
-        if device.wants_report:
-            device.wants_report = False
-            device.graph_report = describe(device, graph, plan, physical)
-        device.timers.end(ran, cpu_ms, queries)
+        device.timers.end([node.name for node in passes], cpu_ms, queries)
         device.end_frame()
 
-    def _acquire(self, handle: Any) -> Texture | Buffer:
-        resource = self.pool.acquire(_description(handle))
-        if resource.name != handle.name:
-            resource.name = handle.name
-            kind = c.LABEL_TEXTURE if isinstance(resource, Texture) else c.LABEL_BUFFER
-            self.gl.label(kind, resource.glo, handle.name)
-        handle.physical = resource
-        return resource
+    def _plan(self, graph: Graph) -> FramePlan:
+        """The plan of a frame: that of an earlier one, where the same is used for the same."""
+        key = (*[node.uses for node in graph.passes], None, *graph.kept)
+        plan = self.recall.plans.get(key)
+        if plan is None:
+            plan = self.recall.plans[key] = FramePlan(graph.passes, graph.kept)
+        for handle in plan.handles:
+            if handle.graph is not graph:
+                raise GraphError(f"{handle.name!r} is no resource of this frame")
+        return plan
 
-    def _give_back(self, handle: Any, physical: Texture | Buffer) -> None:
-        handle.physical = None
-        self.pool.give_back(_description(handle), physical)
+    def _assign(self, plan: FramePlan) -> None:
+        """Give each handle its target: those that never live at one time may have the same."""
+        pool = self.pool
+        held: dict[AnyHandle, Any] = {}
+        try:
+            for handle, born in plan.lifetimes:
+                if born:
+                    handle.physical = held[handle] = pool.acquire(handle.description)
+                else:
+                    pool.give_back(handle.description, held.pop(handle))
+        except BaseException:
+            for handle in held:
+                self._give_back(handle)
+            raise
+
+    def _give_back(self, handle: AnyHandle) -> None:
+        target, handle.physical = handle.physical, None
+        assert target is not None
+        self.pool.give_back(handle.description, target)
+
+    def _label(self, plan: FramePlan) -> None:
+        """Name the targets for debuggers and driver messages."""
+        for target, name in plan.labels:
+            if target.name != name:
+                target.name = name
+                kind = c.LABEL_TEXTURE if isinstance(target, Texture) else c.LABEL_BUFFER
+                self.gl.label(kind, target.glo, name)
 
     def _push(self, name: str) -> None:
         encoded = self._encoded.get(name)
@@ -151,9 +170,9 @@ class Executor:
         if bits:
             self.gl.glMemoryBarrier(bits)
 
-    def _bind_pass(self, node: Pass) -> None:
+    def _bind_pass(self, node: Any) -> None:
         binder = self.binder
-        binder.bind(node.bindings, self._physical)
+        binder.bind(node.bound.bindings)
         glo, base = self._params
         for unit, offset, size in node.params:
             binder.bind_params(unit, glo, base + offset, size)
@@ -164,20 +183,15 @@ class Executor:
         self._bind_pass(node)
         compute = node.program.mgl
         if node.indirect is not None:
-            resource, offset = node.indirect
-            compute.run_indirect(self._physical[resource].mgl, offset)
+            source, _, _ = node.bound.accesses[-1]
+            compute.run_indirect(source.mgl, node.indirect)
         elif 0 not in node.groups:
             compute.run(*node.groups)
 
     def _raster(self, node: Any) -> None:
-        physical, gl = self._physical, self.gl
-        color = [(physical[r], level, layer) for r, level, layer, _ in node.color]
-        depth = None
-        if node.depth is not None:
-            depth = (physical[node.depth[0]], *node.depth[1:])
-        framebuffer = self.framebuffers.get(color, depth, node.size)
-        gl.glBindFramebuffer(c.FRAMEBUFFER, framebuffer)
-        self._clear_targets(node, color, depth)
+        gl = self.gl
+        gl.glBindFramebuffer(c.FRAMEBUFFER, node.bound.framebuffer)
+        self._clear_targets(node)
         gl.glViewport(*node.viewport)
         self.set_state(node.state)
         self._bind_pass(node)
@@ -193,13 +207,8 @@ class Executor:
             self._state = state
             raster_state.apply(self.gl, state)
 
-    def _clear_targets(self, node: RasterPass, color: Sequence[Any], depth: Any) -> None:
-        clears = [item[3] for item in node.color]
-        if (
-            node.clear_depth is None
-            and node.clear_stencil is None
-            and not any(clear is not None for clear in clears)
-        ):
+    def _clear_targets(self, node: Any) -> None:
+        if node.clear_depth is None and node.clear_stencil is None and not node.clears:
             return
         gl = self.gl
         raster_state.prepare_clear(gl)
@@ -207,12 +216,13 @@ class Executor:
         if node.tile is not None:
             gl.glEnable(c.SCISSOR_TEST)
             gl.glScissor(*node.tile)
-        for number, clear in enumerate(clears):
+        for number, clear in enumerate(node.clears):
             if clear is not None:
-                self._clear_color(number, clear, color[number][0].format.kind)
+                self._clear_color(number, clear, node.bound.color[number][0].format.kind)
         if node.clear_depth is not None:
             value = ctypes.c_float(node.clear_depth)
             gl.glClearBufferfv(c.DEPTH, 0, ctypes.byref(value))
+        depth = node.bound.depth
         if depth is not None and depth[0].format.kind == "depth_stencil":
             stencil = node.clear_stencil
             if stencil is None and node.clear_depth is not None:
@@ -230,7 +240,7 @@ class Executor:
             self.gl.glClearBufferfv(c.COLOR, number, (ctypes.c_float * 4)(*color))
 
     def _clear_texture(self, node: Any) -> None:
-        texture: Texture = self._physical[node.resource]
+        texture, _, _ = node.bound.accesses[0]
         color = (*node.color, 0, 0, 0, 0)[:4]
         kind = texture.format.kind
         if self.gl.has_clear_tex_image and not texture.format.is_depth:
@@ -257,7 +267,8 @@ class Executor:
 
     def _clear_buffer(self, node: Any) -> None:
         gl = self.gl
-        gl.glBindBuffer(c.COPY_WRITE_BUFFER, self._physical[node.resource].glo)
+        buffer, _, _ = node.bound.accesses[0]
+        gl.glBindBuffer(c.COPY_WRITE_BUFFER, buffer.glo)
         value = ctypes.byref(ctypes.c_uint(node.value))
         span = (node.offset, node.length)
         kind = (c.RED_INTEGER, c.UNSIGNED_INT)
@@ -265,7 +276,7 @@ class Executor:
 
     def _copy(self, node: Any) -> None:
         gl = self.gl
-        source, target = self._physical[node.source], self._physical[node.target]
+        (source, _, _), (target, _, _) = node.bound.accesses
         if node.span is None:
             for level in range(source.mips):
                 width, height, slices = source.extent(level)
@@ -280,16 +291,13 @@ class Executor:
         gl.glCopyBufferSubData(c.COPY_READ_BUFFER, c.COPY_WRITE_BUFFER, *node.span)
 
     def _readback(self, node: Any) -> None:
-        source = self._physical[node.resource]
+        source, _, _ = node.bound.accesses[0]
         self.device.readbacks.request(source, node.callback, self.device.frame)
 
     def release(self) -> None:
         """Free the pool, the samplers and the framebuffers."""
         self.return_kept()
+        self.recall.clear()
         self.pool.clear()
         self.framebuffers.release()
         self.binder.release()
-
-
-def _description(handle: Any) -> Hashable:
-    return handle.desc if isinstance(handle, TextureHandle) else handle.nbytes

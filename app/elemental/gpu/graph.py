@@ -7,70 +7,63 @@ demand, ref. counting, lazy release".
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from itertools import repeat
+from typing import TYPE_CHECKING, Any
 
 from elemental.gpu import gl as c
-from elemental.gpu.arguments import (
-    Color,
-    clear_list,
-    group_counts,
-    refuse_feedback,
-    target_parts,
-    triple,
-)
-from elemental.gpu.binding import (
-    GraphError,
-    Params,
-    check_block_size,
-    looks,
-    name_plan,
-    require_all,
-)
+from elemental.gpu.arguments import Color, clear_list, group_counts, triple
+from elemental.gpu.binding import GraphError, Params, check_block_size, require_all
 from elemental.gpu.formats import Format
 from elemental.gpu.passes import (
-    Attachment,
     ClearBuffer,
     ClearTexture,
     ComputePass,
     Copy,
     Pass,
+    Placed,
     RasterPass,
     Readback,
 )
-from elemental.gpu.plan import UNORDERED
 from elemental.gpu.program import Program
 from elemental.gpu.refs import (
     AnyBuffer,
+    AnyHandle,
     AnyTexture,
     BufferHandle,
     ImageRef,
+    Layer,
+    Mip,
     Ref,
+    Resource,
     TextureHandle,
-    Unordered,
 )
-from elemental.gpu.resources import Buffer, Texture
+from elemental.gpu.resources import Texture
 from elemental.gpu.shaders import Compute, Raster
-from elemental.gpu.shape import TextureDesc, level_size
+from elemental.gpu.shape import TextureDesc
 from elemental.gpu.state import DEFAULT, RasterState
+from elemental.gpu.uses import Uses, check_owner
 
 if TYPE_CHECKING:
     from elemental.gpu.device import Device
     from elemental.gpu.encode import Encoder
 
-AnyResource = Texture | TextureHandle | Buffer | BufferHandle
+_NONE: Mapping[str, Any] = {}
 
 
 class Graph:
     """One frame. Declare passes, ``keep`` the outputs, ``execute``; made by ``begin_frame``."""
 
-    __slots__ = ("_executed", "device", "has_run", "kept", "passes", "persistent", "resources")
+    __slots__ = ("_executed", "_recall", "device", "handles", "has_run", "kept", "passes")
 
     def __init__(self, device: Device) -> None:
         self.device = device
+        self._recall = device.executor.recall
+        self._recall.begin_frame()
         self.passes: list[Pass] = []
-        self.resources: list[AnyResource] = []
-        self.persistent: set[int] = set()
-        self.kept: set[int] = set()
+        self.handles: list[AnyHandle] = []
+        """Transient textures and buffers, as declared."""
+        self.kept: list[Resource] = []
+        """The frame's outputs."""
         self._executed = False
         self.has_run = False
         """Whether the frame was executed to its end."""
@@ -96,30 +89,31 @@ class Graph:
             raise GraphError(f"texture {name} needs a size and a format, or a texture to be like")
         if min(size) < 1:
             raise GraphError(f"texture {name} can't have the size {size}")
-        desc = TextureDesc(size, format, mips or 1, layers, cube)
-        handle = TextureHandle(self, len(self.resources), name, desc)
-        self.resources.append(handle)
+        handle = self._recall.texture(name, TextureDesc(size, format, mips or 1, layers, cube))
+        handle.graph = self
+        self.handles.append(handle)
         return handle
 
     def buffer(self, name: str, nbytes: int) -> BufferHandle:
         """A transient buffer of ``nbytes``."""
-        handle = BufferHandle(self, len(self.resources), name, nbytes)
-        self.resources.append(handle)
+        handle = self._recall.buffer(name, nbytes)
+        handle.graph = self
+        self.handles.append(handle)
         return handle
 
-    def keep(self, handle: AnyResource) -> None:
-        """Make ``handle`` an output: valid until the device's next ``begin_frame``."""
-        self.kept.add(self._index(handle))
+    def keep(self, resource: Resource) -> None:
+        """Make ``resource`` an output: valid until the device's next ``begin_frame``."""
+        check_owner(self, resource)
+        if resource not in self.kept:
+            self.kept.append(resource)
 
-    def _index(self, resource: AnyResource) -> int:
-        if resource.graph is self:
-            return resource.index
-        if isinstance(resource, (Texture, Buffer)):
-            resource.graph, resource.index = self, len(self.resources)
-            self.persistent.add(resource.index)
-            self.resources.append(resource)
-            return resource.index
-        raise GraphError(f"{getattr(resource, 'name', resource)!r} is no resource of this frame")
+    def resources(self) -> list[Resource]:
+        """Everything that the passes so far use or may use: handles first, as declared."""
+        used: dict[Resource, None] = dict.fromkeys((*self.handles, *self.kept))
+        for node in self.passes:
+            for resources in (node.reads, node.modifies, node.overwrites):
+                used.update(dict.fromkeys(resources))
+        return list(used)
 
     # Passes ------------------------------------------------------------------------------------
 
@@ -141,21 +135,32 @@ class Graph:
         index from ``linear_thread_id()`` of lib/dispatch.glsl. Raises GraphError.
         """
         program = self.device.program(shader)
-        node = ComputePass(name or program.name, program)
-        missing = self._bind(node, program, reads or {}, writes or {}, params or {})
-        require_all(program, missing)
+        reads, writes, params = reads or _NONE, writes or _NONE, params or _NONE
+        key = (
+            program, indirect,
+            *reads, *reads.values(), None, *writes, *writes.values(), None, *params,
+        )  # fmt: skip
+        uses = self._recall.uses.get(key)
+        if uses is None:
+            uses = Uses()
+            uses.use(self, program, reads, writes, params)
+            require_all(program, uses.missing)
+            if indirect is not None:
+                uses.read_buffers(self, indirect[:1])
+                uses.accesses.append((indirect[0], c.COMMAND_BARRIER, 0))
+            self._recall.uses[key] = uses
+        node = ComputePass(name or program.name, uses, self._place(uses, program, params), program)
         if (threads is not None) + (groups is not None) + (indirect is not None) != 1:
             raise GraphError(f"{node.name}: give one of threads, groups and indirect")
-        if indirect is not None:
-            source, offset = indirect
-            index = self._index(source)
-            node.indirect = (index, offset)
-            node.reads.append(index)
-            node.accesses.append((index, c.COMMAND_BARRIER, False))
-        elif threads is not None:
-            node.groups = group_counts(triple(threads), program.local_size, program, node.name)
+        if threads is not None:
+            if threads != uses.threads:
+                counts = group_counts(triple(threads), program.local_size, program, node.name)
+                uses.threads, uses.groups = threads, counts
+            node.groups = uses.groups
         elif groups is not None:
             node.groups = group_counts(triple(groups), (1, 1, 1), program, node.name)
+        elif indirect is not None:
+            node.indirect = indirect[1]
         self.passes.append(node)
 
     def raster(
@@ -188,39 +193,53 @@ class Graph:
         GraphError.
         """
         program = self.device.program(shader)
-        node = RasterPass(name or program.name, program, state)
-        targets = color if isinstance(color, (list, tuple)) else (color,)
-        node.missing = self._bind(node, program, reads or {}, writes or {}, params or {})
-        if draw is None:
-            require_all(program, node.missing)
+        reads, writes, params = reads or _NONE, writes or _NONE, params or _NONE
+        single = isinstance(color, (Texture, TextureHandle, Mip, Layer))
+        targets: Sequence[ImageRef] = (color,) if single else color  # type: ignore[assignment]
+        name = name or program.name
+        clears = () if clear_color is None else clear_list(clear_color, len(targets), name)
+        cleared = () if tile is not None else tuple([item is not None for item in clears])
+        clears_depth = clear_depth is not None and tile is None
+        writes_depth = depth is not None and (
+            (state.depth_write and state.depth_test != "none")
+            or clear_stencil is not None
+            or clear_depth is not None
+            or (state.stencil is not None and state.stencil.writes)
+        )
+        key = (
+            program, size, *targets, None, depth, cleared, clears_depth, writes_depth, *uses,
+            *reads, *reads.values(), None, *writes, *writes.values(), None, *params,
+        )  # fmt: skip
+        used = self._recall.uses.get(key)
+        if used is None:
+            used = Uses()
+            used.renders = True
+            used.size = size or (0, 0)
+            used.use(self, program, reads, writes, params)
+            for target, is_cleared in zip(targets, cleared or repeat(False), strict=False):
+                used.color.append(used.attach(self, name, target, cleared=is_cleared))
+            if depth is not None:
+                used.depth = used.attach(
+                    self, name, depth, cleared=clears_depth, written=writes_depth
+                )
+            if used.size == (0, 0):
+                raise GraphError(f"{name}: a pass without targets needs size=")
+            used.read_buffers(self, uses)
+            self._recall.uses[key] = used
+        if draw is None and used.missing:
+            require_all(program, used.missing)
+        node = RasterPass(name, used, self._place(used, program, params), program, state)
+        node.clears, node.clear_depth, node.clear_stencil = clears, clear_depth, clear_stencil
         node.draw, node.vertices, node.instances = draw, vertices, instances
-        node.size = size or (0, 0)
-        clears = clear_list(clear_color, len(targets), node.name)
-        for target, clear in zip(targets, clears, strict=True):
-            attachment = self._attach(node, target, cleared=clear is not None and tile is None)
-            node.color.append((*attachment, clear))
-        if depth is not None:
-            writes_depth = state.depth_write and state.depth_test != "none"
-            writes_depth |= clear_stencil is not None or clear_depth is not None
-            writes_depth |= state.stencil is not None and state.stencil.writes
-            cleared = clear_depth is not None and tile is None
-            node.depth = self._attach(node, depth, cleared=cleared, written=writes_depth)
-            node.clear_depth, node.clear_stencil = clear_depth, clear_stencil
-        if node.size == (0, 0):
-            raise GraphError(f"{node.name}: a pass without targets needs size=")
-        node.viewport, node.tile = tile or viewport or (0, 0, *node.size), tile
-        for used in uses:
-            node.reads.append(self._index(used))
+        node.viewport, node.tile = tile or viewport or (0, 0, *used.size), tile
         self.passes.append(node)
 
     def clear_texture(self, handle: AnyTexture, color: Sequence[float] = (0, 0, 0, 0)) -> None:
         """Fill every level and layer."""
-        node = ClearTexture(f"clear {handle.name}", self._index(handle), tuple(color))
-        node.overwrites.append(node.resource)
         by_image = self.device.gl.has_clear_tex_image
         bit = c.TEXTURE_UPDATE_BARRIER if by_image else c.FRAMEBUFFER_BARRIER
-        node.accesses.append((node.resource, bit, False))
-        self.passes.append(node)
+        uses = self._transfer(ClearTexture, bit, target=handle)
+        self.passes.append(ClearTexture(f"clear {handle.name}", uses, tuple(color)))
 
     def clear_buffer(
         self, handle: AnyBuffer, value: int = 0, offset: int = 0, size: int | None = None
@@ -229,11 +248,9 @@ class Graph:
         length = handle.nbytes - offset if size is None else size
         if offset % 4 or length % 4 or offset + length > handle.nbytes:
             raise GraphError(f"clear {handle.name}: {length} bytes from {offset}")
-        node = ClearBuffer(f"clear {handle.name}", self._index(handle), value, offset, length)
         whole = length == handle.nbytes
-        (node.overwrites if whole else node.modifies).append(node.resource)
-        node.accesses.append((node.resource, c.BUFFER_UPDATE_BARRIER, False))
-        self.passes.append(node)
+        uses = self._transfer(ClearBuffer, c.BUFFER_UPDATE_BARRIER, target=handle, whole=whole)
+        self.passes.append(ClearBuffer(f"clear {handle.name}", uses, value, offset, length))
 
     def copy_buffer(
         self,
@@ -247,9 +264,11 @@ class Graph:
         length = src.nbytes - src_offset if size is None else size
         if src_offset + length > src.nbytes or dst_offset + length > dst.nbytes:
             raise GraphError(f"copy {src.name} to {dst.name}: {length} bytes do not fit")
-        node = Copy(f"copy {src.name}", self._index(src), self._index(dst))
+        whole = length == dst.nbytes
+        uses = self._transfer(Copy, c.BUFFER_UPDATE_BARRIER, src, dst, whole)
+        node = Copy(f"copy {src.name}", uses)
         node.span = (src_offset, dst_offset, length)
-        self._add_copy(node, c.BUFFER_UPDATE_BARRIER, length == dst.nbytes)
+        self.passes.append(node)
 
     def copy_texture(
         self,
@@ -264,22 +283,17 @@ class Graph:
             raise GraphError(f"copy {src.name} to {dst.name}: {src.desc} is not {dst.desc}")
         if layer is not None and not 0 <= layer < (src.desc.layers or 0):
             raise GraphError(f"copy {src.name}: it has no layer {layer}")
-        node = Copy(f"copy {src.name}", self._index(src), self._index(dst))
+        whole = layer is None and tile is None
+        node = Copy(
+            f"copy {src.name}", self._transfer(Copy, c.TEXTURE_UPDATE_BARRIER, src, dst, whole)
+        )
         node.layer, node.tile = layer, tile
-        self._add_copy(node, c.TEXTURE_UPDATE_BARRIER, layer is None and tile is None)
-
-    def _add_copy(self, node: Copy, bit: int, whole: bool) -> None:
-        node.reads.append(node.source)
-        (node.overwrites if whole else node.modifies).append(node.target)
-        node.accesses += [(node.source, bit, False), (node.target, bit, False)]
         self.passes.append(node)
 
     def read_later(self, buffer: AnyBuffer, callback: Callable[[bytes], None]) -> None:
         """Hand the bytes to ``callback`` two or three frames later; nothing waits."""
-        node = Readback(f"read {buffer.name}", self._index(buffer), buffer.nbytes, callback)
-        node.reads.append(node.resource)
-        node.accesses.append((node.resource, c.BUFFER_UPDATE_BARRIER, False))
-        self.passes.append(node)
+        uses = self._transfer(Readback, c.BUFFER_UPDATE_BARRIER, buffer)
+        self.passes.append(Readback(f"read {buffer.name}", uses, callback))
 
     def execute(self) -> None:
         """Plan and run the frame. Raises PlanError, ShaderError, GlError (debug devices)."""
@@ -289,65 +303,44 @@ class Graph:
         try:
             self.device.executor.run(self)
             self.has_run = True
-        finally:  # handles know the graph: without this, each frame waits for the cycle collector
+        finally:  # draw callbacks may know the graph: else frames wait for the cycle collector
             self.passes.clear()
-            self.resources.clear()
 
-    # Binding -----------------------------------------------------------------------------------
+    # What frames share ---------------------------------------------------------------------------
 
-    def _bind(
-        self,
-        node: Pass,
-        program: Program,
-        reads: Mapping[str, Ref],
-        writes: Mapping[str, Ref],
-        params: Params,
-    ) -> frozenset[str]:
-        plan = name_plan(program, reads, writes, params)
-        bindings, accesses = node.bindings, node.accesses
-        for slots, refs, used, written in (
-            (plan.reads, reads, node.reads, False),
-            (plan.writes, writes, node.modifies, True),
-        ):
-            for slot, given in zip(slots, refs.values(), strict=True):
-                ref, access = given, int(written)
-                if type(given) is Unordered:
-                    ref, access = given.buffer, UNORDERED * access
-                for look, resource in looks(slot, ref, program):
-                    index = resource.index if resource.graph is self else self._index(resource)
-                    used.append(index)
-                    if slot.unit >= 0:
-                        bindings.append((look, index))
-                        accesses.append((index, look.barrier, access))
-        for slot, values in zip(plan.params, params.values(), strict=True):
+    def _place(self, uses: Uses, program: Program, params: Params) -> Sequence[Placed]:
+        """Hand the values of a pass's uniform blocks to the frame's buffer."""
+        add = self.device.params.add
+        placed = []
+        for slot, values in zip(uses.blocks, params.values(), strict=True):
             if slot.unit >= 0:
-                raw = values.tobytes()
-                if len(raw) != slot.size:
-                    check_block_size(slot, len(raw), program)
-                node.params.append((slot.unit, self.device.params.add(raw), len(raw)))
-        return plan.missing
+                offset, nbytes = add(values)
+                if nbytes != slot.size:
+                    check_block_size(slot, nbytes, program)
+                placed.append((slot.unit, offset, nbytes))
+        return placed
 
-    def _attach(
-        self, node: RasterPass, target: ImageRef, *, cleared: bool, written: bool = True
-    ) -> Attachment:
-        """Note how a render target is used; all targets of a pass have one size."""
-        texture, level, layer = target_parts(target)
-        index, desc = self._index(texture), texture.desc
-        if index in node.reads or index in node.modifies:
-            refuse_feedback(node, (index, level, layer), texture.name)
-        if cleared and desc.mips == 1 and (layer < 0 or desc.slices == 1):
-            node.overwrites.append(index)
-        elif written or cleared:
-            node.modifies.append(index)
-        else:
-            node.reads.append(index)
-        node.accesses.append((index, c.FRAMEBUFFER_BARRIER, False))
-        size = desc.size[:2] if level == 0 else level_size(desc.size, level)[:2]
-        if node.size != size:
-            if node.size != (0, 0):
-                width, height = size
-                raise GraphError(
-                    f"{node.name}: {texture.name} is {width}x{height}, not {node.size}"
-                )
-            node.size = (size[0], size[1])
-        return index, level, layer
+    def _transfer(
+        self,
+        kind: type[Pass],
+        bit: int,
+        source: Resource | None = None,
+        target: Resource | None = None,
+        whole: bool = True,
+    ) -> Uses:
+        """The uses of a clear, a copy or a read-back; ``whole``: nothing of the target is kept."""
+        key = (kind, bit, source, target, whole)
+        uses = self._recall.uses.get(key)
+        if uses is None:
+            uses = Uses()
+            uses.has_side_effect = kind is Readback
+            for resource, used in (
+                (source, uses.reads),
+                (target, uses.overwrites if whole else uses.modifies),
+            ):
+                if resource is not None:
+                    check_owner(self, resource)
+                    used.append(resource)
+                    uses.accesses.append((resource, bit, 0))
+            self._recall.uses[key] = uses
+        return uses

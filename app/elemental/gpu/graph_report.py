@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from elemental.gpu.passes import ComputePass, Copy, Pass, RasterPass, Readback
 from elemental.gpu.pool import HeldTarget, PoolStats
-from elemental.gpu.shape import TextureDesc
+from elemental.gpu.refs import AnyHandle, Resource
+from elemental.gpu.resources import Texture
 from elemental.gpu.timers import PassTiming
 
 if TYPE_CHECKING:
@@ -115,20 +116,18 @@ class GraphReport:
         return sum({r.memory: r.nbytes for r in self.resources if r.transient}.values())
 
 
-def describe(device: Device, graph: Graph, plan: Schedule, physical: Sequence[Any]) -> GraphReport:
-    """The report of a graph that just ran; ``physical``: what each of its resources was."""
+def describe(device: Device, graph: Graph, plan: Schedule) -> GraphReport:
+    """The report of a graph whose passes just ran."""
     passes = [graph.passes[index] for index in plan.order]
-    spans: dict[int, list[int]] = {}
+    spans: dict[Resource, list[int]] = {}
     for position, node in enumerate(passes):
         for used in (node.reads, node.modifies, node.overwrites):
             for resource in used:
                 spans.setdefault(resource, [position, position])[1] = position
     number = {resource: k for k, resource in enumerate(spans)}
     resources = tuple(
-        _resource(physical[resource], graph.resources[resource].name, span,
-                  resource not in graph.persistent, resource in graph.kept)
-        for resource, span in spans.items()
-    )  # fmt: skip
+        _resource(resource, span, resource in graph.kept) for resource, span in spans.items()
+    )
     return GraphReport(
         frame=device.frame,
         passes=tuple(_pass(node, number) for node in passes),
@@ -149,9 +148,9 @@ def pool_report(device: Device) -> PoolReport:
     )  # fmt: skip
 
 
-def _edges(passes: Sequence[Pass], number: dict[int, int]) -> tuple[GraphEdge, ...]:
+def _edges(passes: Sequence[Pass], number: dict[Resource, int]) -> tuple[GraphEdge, ...]:
     edges: dict[GraphEdge, None] = {}
-    writer: dict[int, int] = {}
+    writer: dict[Resource, int] = {}
     for position, node in enumerate(passes):
         for used in (node.reads, node.modifies):
             for resource in used:
@@ -163,13 +162,13 @@ def _edges(passes: Sequence[Pass], number: dict[int, int]) -> tuple[GraphEdge, .
     return tuple(edges)
 
 
-def _pass(node: Pass, number: dict[int, int]) -> GraphPass:
+def _pass(node: Pass, number: dict[Resource, int]) -> GraphPass:
     kind = "clear"
     extent: tuple[int, ...] = ()
     if isinstance(node, ComputePass):
         kind, extent = "compute", () if node.indirect is not None else node.groups
     elif isinstance(node, RasterPass):
-        kind, extent = "raster", node.size
+        kind, extent = "raster", node.uses.size
     elif isinstance(node, Copy):
         kind = "copy"
     elif isinstance(node, Readback):
@@ -181,17 +180,15 @@ def _pass(node: Pass, number: dict[int, int]) -> GraphPass:
     )
 
 
-def _resource(
-    physical: Any, name: str, span: Sequence[int], transient: bool, kept: bool
-) -> GraphResource:
-    desc = getattr(physical, "desc", None)
+def _resource(resource: Resource, span: Sequence[int], kept: bool) -> GraphResource:
+    transient = isinstance(resource, AnyHandle)
+    physical: Any = resource.physical if isinstance(resource, AnyHandle) else resource
     first, last = span
-    if isinstance(desc, TextureDesc):
-        shape = (desc.size, desc.format.name, desc.mips, desc.slices)
-        return GraphResource(
-            name, "texture", *shape, desc.nbytes, transient, kept, first, last, physical.serial
-        )
-    shape = ((), "", 1, 1)
+    kind = "buffer"
+    shape: tuple[tuple[int, ...], str, int, int] = (), "", 1, 1
+    if isinstance(physical, Texture):
+        desc = physical.desc
+        kind, shape = "texture", (desc.size, desc.format.name, desc.mips, desc.slices)
     return GraphResource(
-        name, "buffer", *shape, physical.nbytes, transient, kept, first, last, physical.serial
+        resource.name, kind, *shape, physical.nbytes, transient, kept, first, last, physical.serial
     )

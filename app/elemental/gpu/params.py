@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+import numpy.typing as npt
+
 from elemental.gpu import gl as c
 
 if TYPE_CHECKING:
@@ -24,19 +27,30 @@ class ParamRing:
         self._segment = 0
         self._chunks: list[bytes] = []
         self._offsets: dict[bytes, int] = {}
+        self._places: dict[int, tuple[tuple[int, int], npt.NDArray[np.void]]] = {}
         self.used = 0
         """Bytes of the frame so far."""
         self._buffer: Buffer | None = None
 
-    def add(self, raw: bytes) -> int:
-        """Offset of ``raw`` in the frame's segment; equal bytes are stored once."""
+    def add(self, values: npt.NDArray[np.void]) -> tuple[int, int]:
+        """(offset in the frame's segment, bytes) of ``values``; equal bytes are stored once.
+
+        An array that can't be written to, as `pack` makes them, is known by its identity.
+        """
+        met = self._places.get(id(values))
+        if met is not None:
+            return met[0]
+        raw = values.tobytes()
         offset = self._offsets.get(raw)
         if offset is None:
             offset = self._offsets[raw] = self.used
             padding = -len(raw) % self.alignment
             self._chunks.append(raw + bytes(padding))
             self.used += len(raw) + padding
-        return offset
+        place = offset, len(raw)
+        if not values.flags.writeable:
+            self._places[id(values)] = place, values
+        return place
 
     def upload(self) -> tuple[int, int]:
         """Upload the frame's blocks. (GL buffer name, byte offset of the segment)."""
@@ -57,6 +71,7 @@ class ParamRing:
         """Forget the blocks of the frame that was begun."""
         self._chunks.clear()
         self._offsets.clear()
+        self._places.clear()
         self.used = 0
 
     def release(self) -> None:

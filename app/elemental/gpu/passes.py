@@ -2,39 +2,50 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from elemental.gpu.program import Program
+from elemental.gpu.refs import Resource
 from elemental.gpu.state import RasterState
+from elemental.gpu.uses import Bound, Uses
 
 if TYPE_CHECKING:
-    from elemental.gpu.binding import Look
     from elemental.gpu.encode import Encoder
 
-Attachment = tuple[int, int, int]
-"""(resource, level, layer or -1)."""
+Placed = tuple[int, int, int]
+"""A uniform block: (its binding, offset in the frame's segment, bytes)."""
 
 
 class Pass:
-    """Resources by index into the graph's table; see plan.PlannedPass."""
+    """A name, what is used, and what this frame alone says of it; see plan.PlannedPass."""
 
-    __slots__ = (
-        "accesses", "bindings", "has_side_effect", "modifies", "name", "overwrites", "params",
-        "reads",
-    )  # fmt: skip
+    __slots__ = ("bound", "name", "params", "uses")
 
-    def __init__(self, name: str) -> None:
-        self.name = name
-        self.reads: list[int] = []
-        self.modifies: list[int] = []
-        self.overwrites: list[int] = []
-        self.has_side_effect = False
-        self.accesses: list[tuple[int, int, int]] = []
-        """(resource, barrier bit of the use, shader write)."""
-        self.bindings: list[tuple[Look, int]] = []
-        self.params: list[tuple[int, int, int]] = []
-        """(uniform binding, offset in the frame's segment, bytes)."""
+    def __init__(self, name: str, uses: Uses, params: Sequence[Placed] = ()) -> None:
+        self.name, self.uses, self.params = name, uses, params
+        self.bound: Bound | None = None
+        """The GL objects behind ``uses``, while the graph runs."""
+
+    @property
+    def reads(self) -> Sequence[Resource]:
+        """Resources whose present content is used."""
+        return self.uses.reads
+
+    @property
+    def modifies(self) -> Sequence[Resource]:
+        """Resources that are written and keep what is not written."""
+        return self.uses.modifies
+
+    @property
+    def overwrites(self) -> Sequence[Resource]:
+        """Resources whose earlier content is lost."""
+        return self.uses.overwrites
+
+    @property
+    def has_side_effect(self) -> bool:
+        """True where the pass must run even if nothing reads what it writes."""
+        return self.uses.has_side_effect
 
 
 class ComputePass(Pass):
@@ -42,31 +53,36 @@ class ComputePass(Pass):
 
     __slots__ = ("groups", "indirect", "program")
 
-    def __init__(self, name: str, program: Program) -> None:
-        super().__init__(name)
+    def __init__(self, name: str, uses: Uses, params: Sequence[Placed], program: Program) -> None:
+        Pass.__init__(self, name, uses, params)
         self.program = program
         self.groups = (0, 0, 0)
-        self.indirect: tuple[int, int] | None = None
+        self.indirect: int | None = None
+        """Byte offset of the group counts in the buffer that is used last."""
 
 
 class RasterPass(Pass):
     """Draws into targets."""
 
     __slots__ = (
-        "clear_depth", "clear_stencil", "color", "depth", "draw", "instances", "missing",
-        "program", "size", "state", "tile", "vertices", "viewport",
+        "clear_depth", "clear_stencil", "clears", "draw", "instances", "program", "state", "tile",
+        "vertices", "viewport",
     )  # fmt: skip
 
-    def __init__(self, name: str, program: Program, state: RasterState) -> None:
-        super().__init__(name)
+    def __init__(
+        self,
+        name: str,
+        uses: Uses,
+        params: Sequence[Placed],
+        program: Program,
+        state: RasterState,
+    ) -> None:
+        Pass.__init__(self, name, uses, params)
         self.program, self.state = program, state
-        self.color: list[tuple[int, int, int, tuple[float, ...] | None]] = []
-        """Attachments, each with its clear colour."""
-        self.depth: Attachment | None = None
+        self.clears: Sequence[tuple[float, ...] | None] = ()
+        """Of each colour target; empty where none is cleared."""
         self.clear_depth: float | None = None
         self.clear_stencil: int | None = None
-        self.missing: frozenset[str] = frozenset()
-        self.size = (0, 0)
         self.viewport = (0, 0, 0, 0)
         self.tile: tuple[int, int, int, int] | None = None
         self.draw: Callable[[Encoder], None] | None = None
@@ -77,32 +93,31 @@ class RasterPass(Pass):
 class ClearTexture(Pass):
     """A fill of a whole texture."""
 
-    __slots__ = ("color", "resource")
+    __slots__ = ("color",)
 
-    def __init__(self, name: str, resource: int, color: tuple[float, ...]) -> None:
-        super().__init__(name)
-        self.resource, self.color = resource, color
+    def __init__(self, name: str, uses: Uses, color: tuple[float, ...]) -> None:
+        Pass.__init__(self, name, uses)
+        self.color = color
 
 
 class ClearBuffer(Pass):
     """A fill of a range of a buffer."""
 
-    __slots__ = ("length", "offset", "resource", "value")
+    __slots__ = ("length", "offset", "value")
 
-    def __init__(self, name: str, resource: int, value: int, offset: int, length: int) -> None:
-        super().__init__(name)
-        self.resource, self.value, self.offset, self.length = resource, value, offset, length
+    def __init__(self, name: str, uses: Uses, value: int, offset: int, length: int) -> None:
+        Pass.__init__(self, name, uses)
+        self.value, self.offset, self.length = value, offset, length
 
 
 class Copy(Pass):
-    """A copy between two buffers (``span``: source offset, target offset, bytes), or of textures,
-    of a ``layer`` or of a ``tile``."""
+    """A copy of what is used first to what is used second: between two buffers (``span``: source
+    offset, target offset, bytes), or of textures, of a ``layer`` or of a ``tile``."""
 
-    __slots__ = ("layer", "source", "span", "target", "tile")
+    __slots__ = ("layer", "span", "tile")
 
-    def __init__(self, name: str, source: int, target: int) -> None:
-        super().__init__(name)
-        self.source, self.target = source, target
+    def __init__(self, name: str, uses: Uses) -> None:
+        Pass.__init__(self, name, uses)
         self.span: tuple[int, int, int] | None = None
         self.layer: int | None = None
         self.tile: tuple[int, int, int, int] | None = None
@@ -111,11 +126,8 @@ class Copy(Pass):
 class Readback(Pass):
     """A copy to the CPU that arrives frames later; always runs."""
 
-    __slots__ = ("callback", "nbytes", "resource")
+    __slots__ = ("callback",)
 
-    def __init__(
-        self, name: str, resource: int, nbytes: int, callback: Callable[[bytes], None]
-    ) -> None:
-        super().__init__(name)
-        self.resource, self.nbytes, self.callback = resource, nbytes, callback
-        self.has_side_effect = True
+    def __init__(self, name: str, uses: Uses, callback: Callable[[bytes], None]) -> None:
+        Pass.__init__(self, name, uses)
+        self.callback = callback

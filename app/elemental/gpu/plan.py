@@ -7,9 +7,8 @@ gives each resource its versions; the order of execution comes from the dependen
 from __future__ import annotations
 
 import heapq
-from collections.abc import Collection, Sequence
-from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from collections.abc import Callable, Collection, Hashable, Sequence
+from typing import Any, NamedTuple, Protocol
 
 
 class PlanError(Exception):
@@ -17,22 +16,22 @@ class PlanError(Exception):
 
 
 class PlannedPass(Protocol):
-    """What the planner needs of a pass; resources are indices into the graph's table."""
+    """What the planner needs of a pass; a resource is whatever tells it from the others."""
 
     @property
     def name(self) -> str:
         """Name in messages."""
 
     @property
-    def reads(self) -> Sequence[int]:
+    def reads(self) -> Sequence[Hashable]:
         """Resources whose present content is used."""
 
     @property
-    def modifies(self) -> Sequence[int]:
+    def modifies(self) -> Sequence[Hashable]:
         """Resources that are written and keep what is not written."""
 
     @property
-    def overwrites(self) -> Sequence[int]:
+    def overwrites(self) -> Sequence[Hashable]:
         """Resources whose earlier content is lost."""
 
     @property
@@ -47,30 +46,30 @@ class Schedule(NamedTuple):
     """Indices of the live passes in the order of execution."""
     culled: list[int]
     """Indices of the passes that nobody needs."""
-    births: list[list[int]]
+    births: list[list[Any]]
     """For each position of ``order``: transient resources first used there."""
-    deaths: list[list[int]]
+    deaths: list[list[Any]]
     """For each position of ``order``: transient resources last used there, not kept."""
 
 
 def schedule(
     passes: Sequence[PlannedPass],
-    resources: Sequence[str],
-    persistent: Collection[int],
-    kept: Collection[int],
+    name_of: Callable[[Any], str],
+    persistent: Collection[Hashable],
+    kept: Collection[Hashable],
 ) -> Schedule:
     """Cull and order ``passes``.
 
-    ``resources`` are names by index; ``persistent`` ones outlive the frame, so their writers always
-    run; ``kept`` ones are the frame's outputs. A transient that is read before any pass wrote it,
-    in declaration order, is read in its final version, so its writers run first.
+    ``name_of``: a resource's name in messages; ``persistent`` ones outlive the frame, so their
+    writers always run; ``kept`` ones are the frame's outputs. A transient that is read before any
+    pass wrote it, in declaration order, is read in its final version, so its writers run first.
     Raises PlanError for a cycle or for a transient that is read or kept and never written.
     """
-    needs, late = _needs(passes, resources, persistent)
+    needs, late = _needs(passes, name_of, persistent)
     live, unwritten = _live(passes, needs, persistent, kept)
-    for resource in sorted(unwritten):
-        if resource not in persistent:
-            raise PlanError(f"{resources[resource]} is kept, but no pass writes it")
+    for resource in kept:
+        if resource in unwritten and resource not in persistent:
+            raise PlanError(f"{name_of(resource)} is kept, but no pass writes it")
     order = [index for index, alive in enumerate(live) if alive]
     if late:
         order = _sorted(passes, order, needs, _follows(passes, persistent))
@@ -80,12 +79,14 @@ def schedule(
 
 
 def _needs(
-    passes: Sequence[PlannedPass], resources: Sequence[str], persistent: Collection[int]
+    passes: Sequence[PlannedPass],
+    name_of: Callable[[Any], str],
+    persistent: Collection[Hashable],
 ) -> tuple[list[set[int]], bool]:
     """(passes whose results each pass uses, whether a read precedes its write)."""
     needs: list[set[int]] = []
-    writer: dict[int, int] = {}
-    early_reads: dict[int, list[int]] = {}
+    writer: dict[Hashable, int] = {}
+    early_reads: dict[Hashable, list[int]] = {}
     for index, item in enumerate(passes):
         need: set[int] = set()
         for resource in item.reads:
@@ -105,17 +106,17 @@ def _needs(
         final = writer.get(resource)
         if final is None or indices == [final]:
             reader = passes[indices[0]].name
-            raise PlanError(f"pass {reader} reads {resources[resource]}, which no pass writes")
+            raise PlanError(f"pass {reader} reads {name_of(resource)}, which no pass writes")
         for index in indices:
             needs[index].add(final)
     return needs, bool(early_reads)
 
 
-def _follows(passes: Sequence[PlannedPass], persistent: Collection[int]) -> list[set[int]]:
+def _follows(passes: Sequence[PlannedPass], persistent: Collection[Hashable]) -> list[set[int]]:
     """Passes that each pass must not overtake, as it destroys what they read or wrote."""
     follows: list[set[int]] = []
-    writer: dict[int, int] = {}
-    readers: dict[int, list[int]] = {}
+    writer: dict[Hashable, int] = {}
+    readers: dict[Hashable, list[int]] = {}
     for index, item in enumerate(passes):
         follow = {writer[r] for r in item.overwrites if r in writer}
         for resource in item.reads:
@@ -132,9 +133,9 @@ def _follows(passes: Sequence[PlannedPass], persistent: Collection[int]) -> list
 def _live(
     passes: Sequence[PlannedPass],
     needs: list[set[int]],
-    persistent: Collection[int],
-    kept: Collection[int],
-) -> tuple[list[bool], set[int]]:
+    persistent: Collection[Hashable],
+    kept: Collection[Hashable],
+) -> tuple[list[bool], set[Hashable]]:
     """(whether each pass runs, kept resources that none writes)."""
     live = [False] * len(passes)
     stack: list[int] = []
@@ -191,12 +192,12 @@ def _sorted(
 def _lifetimes(
     passes: Sequence[PlannedPass],
     order: list[int],
-    persistent: Collection[int],
-    kept: Collection[int],
-) -> tuple[list[list[int]], list[list[int]]]:
-    births: list[list[int]] = [[] for _ in order]
-    deaths: list[list[int]] = [[] for _ in order]
-    last: dict[int, int] = {}
+    persistent: Collection[Hashable],
+    kept: Collection[Hashable],
+) -> tuple[list[list[Any]], list[list[Any]]]:
+    births: list[list[Any]] = [[] for _ in order]
+    deaths: list[list[Any]] = [[] for _ in order]
+    last: dict[Hashable, int] = {}
     for position, index in enumerate(order):
         item = passes[index]
         for used in (item.reads, item.modifies, item.overwrites):
@@ -223,17 +224,6 @@ class Tracked(Protocol):
     written_at: int
     access_at: int
     ordered_at: int
-
-
-@dataclass(slots=True)
-class Access:
-    """One use of a resource by a pass."""
-
-    resource: int
-    barrier: int
-    """The glMemoryBarrier bit that makes earlier shader writes visible to this use."""
-    shader_write: bool = False
-    """Written by image stores or storage blocks: not ordered by GL without a barrier."""
 
 
 class Hazards:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Hashable
+from typing import TYPE_CHECKING, NamedTuple
 
 from elemental.gpu import gl as c
 from elemental.gpu.resources import Buffer, Texture
@@ -17,31 +16,49 @@ if TYPE_CHECKING:
 class TextureHandle(Shaped):
     """A transient texture of one frame; ``physical`` is set while the graph runs.
 
-    A kept handle's ``physical`` stays valid until the device's next ``begin_frame``.
+    A kept handle's ``physical`` stays valid until the device's next ``begin_frame``. Frames that
+    declare alike are given the same handles; ``graph`` is the frame that a handle is of.
     """
 
-    __slots__ = ("graph", "index", "physical")
+    __slots__ = ("graph", "physical")
 
-    def __init__(self, graph: Graph, index: int, name: str, desc: TextureDesc) -> None:
-        self.graph, self.index, self.name, self.desc = graph, index, name, desc
+    def __init__(self, name: str, desc: TextureDesc) -> None:
+        self.name, self.desc = name, desc
+        self.graph: Graph | None = None
         self.physical: Texture | None = None
+
+    @property
+    def description(self) -> Hashable:
+        """By what the pool finds memory for it."""
+        return self.desc
 
 
 class BufferHandle:
     """A transient buffer of one frame."""
 
-    __slots__ = ("graph", "index", "name", "nbytes", "physical")
+    __slots__ = ("graph", "name", "nbytes", "physical")
 
-    def __init__(self, graph: Graph, index: int, name: str, nbytes: int) -> None:
-        self.graph, self.index, self.name, self.nbytes = graph, index, name, nbytes
+    def __init__(self, name: str, nbytes: int) -> None:
+        self.name, self.nbytes = name, nbytes
+        self.graph: Graph | None = None
         self.physical: Buffer | None = None
+
+    @property
+    def description(self) -> Hashable:
+        """By what the pool finds memory for it."""
+        return self.nbytes
 
 
 AnyTexture = Texture | TextureHandle
 AnyBuffer = Buffer | BufferHandle
+AnyHandle = TextureHandle | BufferHandle
+Resource = AnyTexture | AnyBuffer
+
+# The words below are tuples, which compare and hash by their parts: what a pass uses is found by
+# them again in the frames that follow.
 
 
-class Sampled:
+class Sampled(NamedTuple):
     """A texture with an explicit way of sampling.
 
     ``filter``: nearest, linear (level 0 unless the shader names a level; never between levels),
@@ -50,38 +67,23 @@ class Sampled:
     the edge with wrap="border". ``stencil``: sample the stencil of a D24S8 texture (usampler).
     """
 
-    __slots__ = ("anisotropy", "border", "compare", "filter", "stencil", "texture", "wrap")
-
-    def __init__(
-        self,
-        texture: AnyTexture | Mip | Layer,
-        filter: str | None = None,
-        wrap: str | tuple[str, str] = "clamp",
-        compare: bool = False,
-        *,
-        border: float = 0.0,
-        anisotropy: float = 1.0,
-        stencil: bool = False,
-    ) -> None:
-        self.texture = texture
-        self.filter = filter
-        self.wrap = wrap
-        self.compare = compare
-        self.border = border
-        self.anisotropy = anisotropy
-        self.stencil = stencil
+    texture: AnyTexture | Mip | Layer
+    filter: str | None = None
+    wrap: str | tuple[str, str] = "clamp"
+    compare: bool = False
+    border: float = 0.0
+    anisotropy: float = 1.0
+    stencil: bool = False
 
 
-@dataclass(slots=True)
-class Mip:
+class Mip(NamedTuple):
     """One mip level of a texture, for sampling, image access or as a render target."""
 
     texture: AnyTexture
     level: int
 
 
-@dataclass(slots=True)
-class Layer:
+class Layer(NamedTuple):
     """One layer, slice or cube face (layer*6 + face) of one level of a texture."""
 
     texture: AnyTexture
@@ -89,8 +91,7 @@ class Layer:
     level: int = 0
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Unordered:
+class Unordered(NamedTuple):
     """A buffer as passes write it in whatever order: atomics, or the same value by all.
 
     Such passes don't wait for each other; all that reads it waits for them.
@@ -101,7 +102,7 @@ class Unordered:
 
 ImageRef = AnyTexture | Mip | Layer
 TextureRef = ImageRef | Sampled
-Ref = TextureRef | AnyBuffer | Unordered | Sequence[TextureRef]
+Ref = TextureRef | AnyBuffer | Unordered | tuple[TextureRef, ...]
 
 _FILTERS = {
     "nearest": (c.NEAREST, c.NEAREST),

@@ -29,8 +29,8 @@ class Texture(Shaped):
     """A texture of immutable storage on the device; ``release`` frees it and its views."""
 
     __slots__ = (
-        "access_at", "category", "device", "glo", "graph", "index", "ordered_at", "serial",
-        "target", "views", "written_at",
+        "access_at", "category", "device", "glo", "ordered_at", "serial", "target", "views",
+        "written_at",
     )  # fmt: skip
 
     def __init__(self, device: Device, name: str, desc: TextureDesc, category: str) -> None:
@@ -38,8 +38,6 @@ class Texture(Shaped):
         self.target = desc.target
         self.serial = next(_serial)
         self.views: dict[tuple[int, int, int, int, bool], int] = {}
-        self.graph: object = None
-        self.index = -1
         self.written_at = self.access_at = self.ordered_at = 0
         gl = device.gl
         self.glo = gl.generate("Textures")
@@ -164,8 +162,8 @@ class Buffer:
     """A buffer on the device."""
 
     __slots__ = (
-        "access_at", "category", "device", "glo", "graph", "index", "mgl", "name", "nbytes",
-        "ordered_at", "serial", "texels", "written_at",
+        "access_at", "category", "device", "glo", "mgl", "name", "nbytes", "ordered_at", "serial",
+        "texels", "written_at",
     )  # fmt: skip
 
     def __init__(
@@ -179,8 +177,6 @@ class Buffer:
         nbytes = contents if isinstance(contents, int) else len(contents)
         self.device, self.name, self.nbytes, self.category = device, name, nbytes, category
         self.serial = next(_serial)
-        self.graph: object = None
-        self.index = -1
         self.written_at = self.access_at = self.ordered_at = 0
         given: dict[str, Any] = {"reserve" if isinstance(contents, int) else "data": contents}
         self.texels = 0

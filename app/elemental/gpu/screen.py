@@ -75,8 +75,7 @@ def draw(
     bind(device, onto)
     gl.glViewport(*area)
     raster_state.apply(gl, raster_state.DEFAULT)
-    binding = [(look, number) for number, (look, _) in enumerate(bound)]
-    executor.binder.bind(binding, [resource for _, resource in bound])
+    executor.binder.bind(executor.binder.prepare(bound))
     vertex_array = program.vertex_arrays.get(0)
     if vertex_array is None:
         vertex_array = program.vertex_arrays[0] = device.ctx.vertex_array(program.mgl, [])

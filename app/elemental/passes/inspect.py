@@ -16,7 +16,7 @@ from elemental.core.layout import Block, layouts, pack
 from elemental.gpu.device import Device
 from elemental.gpu.formats import RGBA8
 from elemental.gpu.graph import Graph
-from elemental.gpu.refs import AnyTexture, Layer, Mip, Sampled, TextureHandle
+from elemental.gpu.refs import AnyTexture, Layer, Mip, Resource, Sampled, TextureHandle
 from elemental.gpu.resources import Buffer, Texture
 from elemental.gpu.shaders import Compute, Raster
 from elemental.passes.texels import Pixels, texels
@@ -144,12 +144,12 @@ class Inspector:
             return self._copy
         number = 0
         written = _written(g)
-        for resource in g.resources:
+        for resource in g.resources():
             if not _is(resource, target):
                 continue
             assert isinstance(resource, (Texture, TextureHandle))
             if number == target.occurrence:
-                ready = isinstance(resource, Texture) or resource.index in written
+                ready = isinstance(resource, Texture) or resource in written
                 return resource if ready else None
             number += 1
         return None
@@ -208,12 +208,12 @@ class PixelProbe:
         """The passes of one frame."""
         written = _written(g)
         found: dict[str, AnyTexture] = {}
-        for resource in g.resources:
+        for resource in g.resources():
             if not isinstance(resource, (Texture, TextureHandle)):
                 continue
-            if resource.index in g.kept:
+            if resource in g.kept:
                 found[PICTURE_NAME] = resource
-            holds = isinstance(resource, Texture) or resource.index in written
+            holds = isinstance(resource, Texture) or resource in written
             if holds and resource.name in self.names and len(resource.size) == 2:
                 found[resource.name] = resource
         for name, source in found.items():
@@ -268,8 +268,8 @@ def _is(resource: object, target: Target) -> bool:
     )
 
 
-def _written(g: Graph) -> set[int]:
-    written: set[int] = set()
+def _written(g: Graph) -> set[Resource]:
+    written: set[Resource] = set()
     for item in g.passes:
         written.update(item.modifies, item.overwrites)
     return written

@@ -108,7 +108,8 @@ class Observers:
         if "pixel" in self._wants:
             self.pixel.add(g)
         if "eye" in self._wants:
-            state = next((r for r in g.resources if isinstance(r, Buffer) and r.name == EYE), None)
+            buffers = (item for item in g.resources() if isinstance(item, Buffer))
+            state = next((buffer for buffer in buffers if buffer.name == EYE), None)
             if state is None:
                 self.eye = None
             else:

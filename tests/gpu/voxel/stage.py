@@ -127,7 +127,7 @@ class Stage(Lit):
         as_filled = g.buffer("queue as filled", queue.nbytes)  # building links the fragments
         g.copy_buffer(queue, as_filled)
         build(g, self.octree, queue)
-        buffers = {r.name: r for r in g.resources if isinstance(r, BufferHandle)}
+        buffers = {r.name: r for r in g.handles if isinstance(r, BufferHandle)}
         for handle in buffers.values():
             g.keep(handle)
         g.execute()
