@@ -177,7 +177,7 @@ STORAGE, IMAGE, FETCH = (
         ("write clear", [c.BUFFER_UPDATE_BARRIER]),
         ("clear read", []),
         ("clear write", [STORAGE]),
-        ("write vertex", [c.VERTEX_ATTRIB_ARRAY_BARRIER, c.ELEMENT_ARRAY_BARRIER]),
+        ("write vertex", [c.VERTEX_ATTRIB_ARRAY_BARRIER | c.ELEMENT_ARRAY_BARRIER]),
         ("write send", [c.BUFFER_UPDATE_BARRIER]),
         ("store fetch", [FETCH]),
         ("store load", [IMAGE]),

@@ -10,7 +10,7 @@ from __future__ import annotations
 import ast
 import operator
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Set
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
@@ -61,6 +61,8 @@ class _Laid(NamedTuple):
     """Shape that a caller gives; for a matrix (rows, columns)."""
     matrix: bool = False
     array: bool = False
+    padded: bool = False
+    """Whether lanes are stored that nobody gives."""
 
 
 class Layouts:
@@ -181,10 +183,11 @@ class Layouts:
         align = _round_up(laid.align, 16) if rule == "std140" else laid.align
         stride = _round_up(laid.size, align)
         shape, given = laid.shape, (member.extent, *laid.given)
+        padded = laid.padded
         if laid.dtype.fields is None and not laid.matrix and stride > laid.size:
-            shape = (stride // 4,)
+            shape, padded = (stride // 4,), True
         size, shape = stride * member.extent, (member.extent, *shape)
-        return _Laid(align, size, laid.dtype, shape, given, laid.matrix, array=True)
+        return _Laid(align, size, laid.dtype, shape, given, laid.matrix, True, padded)
 
     def _type(self, name: str, rule: str) -> _Laid:
         if name in _SCALARS:
@@ -200,7 +203,10 @@ class Layouts:
             rows = int(matrix["rows"] or columns)
             stride = 8 if rows == 2 and rule == "std430" else 16
             shape, given = (columns, stride // 4), (rows, columns)
-            return _Laid(stride, stride * columns, np.dtype("<f4"), shape, given, True)
+            padded = rows < shape[1]
+            return _Laid(
+                stride, stride * columns, np.dtype("<f4"), shape, given, True, False, padded
+            )
         if name in self._structs:
             return self._record(name, self._structs[name], rule)
         raise ValueError(f"no layout is known for the type {name}")
@@ -233,27 +239,30 @@ def _fill(
 ) -> npt.NDArray[np.void]:
     metadata: Any = dtype.metadata
     members: Mapping[str, _Laid] = metadata["members"]
-    unknown = sorted(set(fields) - set(members))
-    missing = sorted(n for n in set(members) - set(fields) if not n.startswith("reserved"))
-    if unknown or missing:
-        raise ValueError(f"{metadata['name']}: unknown {unknown}, missing {missing}")
+    if fields.keys() != members.keys():
+        _check_names(metadata["name"], fields.keys(), members.keys())
     for name, value in fields.items():
         laid = members[name]
         array = np.asarray(value)
-        wanted = lead + laid.given
-        if array.shape != wanted:
+        if array.shape != (lead + laid.given if lead else laid.given):
+            wanted = lead + laid.given
             raise ValueError(f"{metadata['name']}.{name}: shape {array.shape}, not {wanted}")
         if laid.matrix:
-            array = np.swapaxes(array, -1, -2)
-        target = record[name]
-        padded = laid.dtype.fields is None and target.shape != array.shape
-        if padded and target.ndim > array.ndim:
-            target[..., 0] = array
-        elif padded:
-            target[..., : array.shape[-1]] = array
-        else:
+            array = array.swapaxes(-1, -2)
+        if not laid.padded:
             record[name] = array
+        elif len(laid.shape) > len(laid.given):
+            record[name][..., 0] = array
+        else:
+            record[name][..., : array.shape[-1]] = array
     return record
+
+
+def _check_names(record: str, given: Set[str], members: Set[str]) -> None:
+    unknown = sorted(given - members)
+    missing = sorted(n for n in members - given if not n.startswith("reserved"))
+    if unknown or missing:
+        raise ValueError(f"{record}: unknown {unknown}, missing {missing}")
 
 
 @cache

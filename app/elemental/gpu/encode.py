@@ -9,13 +9,15 @@ import moderngl
 
 from elemental.gpu import gl as c
 from elemental.gpu.binding import GraphError, looks, require_all
+from elemental.gpu.program import Slot
 from elemental.gpu.refs import AnyBuffer, AnyHandle, BufferHandle, Ref
-from elemental.gpu.resources import Buffer, VertexInput
+from elemental.gpu.resources import VertexInput
 from elemental.gpu.state import RasterState
 
 if TYPE_CHECKING:
     from elemental.gpu.execute import Executor
     from elemental.gpu.passes import RasterPass
+    from elemental.gpu.recall import Drawn
 
 _MODES = {
     "points": moderngl.POINTS,
@@ -35,7 +37,8 @@ class Encoder:
     def __init__(self, executor: Executor, node: RasterPass) -> None:
         self._executor, self._node = executor, node
         self._missing = set(node.uses.missing)
-        self._seen: set[tuple[int, int]] = set()
+        self._seen: set[int] = set()
+        """Serial numbers of the commands and vertex inputs whose barriers were issued."""
 
     def bind(self, name: str, ref: Ref) -> None:
         """Bind a texture or buffer that changes between draws. Raises GraphError.
@@ -49,12 +52,22 @@ class Encoder:
         self._missing.discard(name)
         if not slot.active:
             return
-        bound = [
-            (look, resource.physical if isinstance(resource, AnyHandle) else resource)
-            for look, resource in looks(slot, ref, program)
-        ]
-        self._executor.barrier([(resource, look.barrier, 0) for look, resource in bound])
-        self._executor.binder.bind(self._executor.binder.prepare(bound))
+        known = self._executor.recall.draws.get((slot, ref))
+        if known is None:
+            known = self._looked_up(slot, ref)
+        accesses, bindings = known
+        self._executor.barrier(accesses)
+        self._executor.binder.bind(bindings)
+
+    def _looked_up(self, slot: Slot, ref: Ref) -> Drawn:
+        bound = looks(slot, ref, self._node.program)
+        lasting = not any(isinstance(resource, AnyHandle) for _, resource in bound)
+        physical = [(look, r.physical if isinstance(r, AnyHandle) else r) for look, r in bound]
+        bindings = self._executor.binder.prepare(physical)
+        found = [(resource, look.barrier, 0) for look, resource in physical], bindings
+        if lasting:
+            self._executor.recall.draws[slot, ref] = found
+        return found
 
     def set(self, **changes: Any) -> None:
         """Change fields of the pass's RasterState for the draws that follow."""
@@ -88,7 +101,9 @@ class Encoder:
         physical = commands.physical if isinstance(commands, BufferHandle) else commands
         if physical is None:
             raise GraphError(f"{self._node.name}: name {commands.name} in uses=")
-        self._read(physical, c.COMMAND_BARRIER)
+        if physical.serial not in self._seen:
+            self._seen.add(physical.serial)
+            self._executor.barrier([(physical, c.COMMAND_BARRIER, 0)])
         vertex_array = self._vertex_array(vertex_input)
         vertex_array.render_indirect(physical.mgl, _MODES[mode], count, first)
 
@@ -99,22 +114,14 @@ class Encoder:
         serial = 0
         if vertex_input is not None:
             serial = vertex_input.serial
-            if (serial, 0) not in self._seen:
-                self._seen.add((serial, 0))
-                for buffer, _, _ in vertex_input.content:
-                    self._read(buffer, c.VERTEX_ATTRIB_ARRAY_BARRIER)
-                if vertex_input.index is not None:
-                    self._read(vertex_input.index, c.ELEMENT_ARRAY_BARRIER)
+            if serial not in self._seen:
+                self._seen.add(serial)
+                self._executor.barrier(vertex_input.accesses)
         vertex_array = program.vertex_arrays.get(serial)
         if vertex_array is None:
             vertex_array = self._make(program.mgl, vertex_input)
             program.vertex_arrays[serial] = vertex_array
         return vertex_array
-
-    def _read(self, buffer: Buffer, bit: int) -> None:
-        if (buffer.serial, bit) not in self._seen:
-            self._seen.add((buffer.serial, bit))
-            self._executor.barrier([(buffer, bit, False)])
 
     def _make(self, program: Any, vertex_input: VertexInput | None) -> moderngl.VertexArray:
         ctx = self._executor.device.ctx

@@ -204,8 +204,8 @@ class Executor:
     def set_state(self, state: raster_state.RasterState) -> None:
         """Apply a raster state unless it is the present one."""
         if state is not self._state:
+            raster_state.apply(self.gl, state, self._state)
             self._state = state
-            raster_state.apply(self.gl, state)
 
     def _clear_targets(self, node: Any) -> None:
         if node.clear_depth is None and node.clear_stencil is None and not node.clears:

@@ -246,10 +246,12 @@ class Hazards:
         issued = self._issued
         bits = 0
         for state, bit, shader_write in accesses:
-            if shader_write:
-                since = state.ordered_at if shader_write == UNORDERED else state.access_at
-            else:
+            if not shader_write:
                 since = state.written_at
+            elif shader_write == UNORDERED:
+                since = state.ordered_at
+            else:
+                since = state.access_at
             if since and since > issued.get(bit, 0):
                 bits |= bit
         if bits:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from collections.abc import Callable, Hashable, Sequence
+from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
 from elemental.gpu.refs import BufferHandle, TextureHandle
 from elemental.gpu.shape import TextureDesc
 
 if TYPE_CHECKING:
+    from elemental.gpu.binder import Binding
     from elemental.gpu.frame_plan import FramePlan
     from elemental.gpu.uses import Uses
 
@@ -16,6 +17,8 @@ GENERATION = 16
 """Frames after which what was not asked for grows old; a second such span forgets it. Long enough
 for what comes back every few frames, short enough for a window that is being resized."""
 
+Drawn: TypeAlias = "tuple[Sequence[tuple[Any, int, int]], Sequence[Binding]]"
+"""(accesses, bindings) of what a draw callback binds."""
 V = TypeVar("V")
 H = TypeVar("H", TextureHandle, BufferHandle)
 
@@ -74,14 +77,17 @@ class Recall:
         """By program and references."""
         self.plans: Recent[FramePlan] = Recent()
         """By the uses of all passes and the frame's outputs."""
+        self.draws: Recent[Drawn] = Recent()
+        """By slot and reference: what draw callbacks bind."""
         self._handles: Recent[_Namesakes] = Recent()
+        self._known: tuple[Recent[Any], ...] = (self.uses, self.plans, self.draws, self._handles)
         self._frame = 0
 
     def begin_frame(self) -> None:
         """Count a frame: its handles are given out from the first again."""
         self._frame += 1
         if self._frame % GENERATION == 0:
-            for known in (self.uses, self.plans, self._handles):
+            for known in self._known:
                 known.grow_old()
 
     def texture(self, name: str, desc: TextureDesc) -> TextureHandle:
@@ -107,5 +113,5 @@ class Recall:
 
     def clear(self) -> None:
         """Forget everything."""
-        for known in (self.uses, self.plans, self._handles):
+        for known in self._known:
             known.clear()

@@ -230,7 +230,7 @@ class Buffer:
 class VertexInput:
     """Vertex and index buffers by attribute name; a vertex array is made per program on demand."""
 
-    __slots__ = ("content", "device", "index", "serial")
+    __slots__ = ("accesses", "content", "device", "index", "serial")
 
     def __init__(
         self,
@@ -240,6 +240,11 @@ class VertexInput:
     ) -> None:
         self.device, self.index = device, index
         self.content = [(buffer, layout, tuple(names)) for buffer, layout, names in content]
+        read = dict.fromkeys(buffer for buffer, _, _ in self.content)
+        self.accesses = [(buffer, c.VERTEX_ATTRIB_ARRAY_BARRIER, 0) for buffer in read]
+        """What a draw from it reads; see `Hazards`."""
+        if index is not None:
+            self.accesses.append((index, c.ELEMENT_ARRAY_BARRIER, 0))
         self.serial = next(_serial)
 
     def release(self) -> None:

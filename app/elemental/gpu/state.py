@@ -46,9 +46,9 @@ class Stencil:
         return self.write_mask != 0 and not kept
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class RasterState:
-    """State of a raster pass; make it a module constant."""
+    """State of a raster pass; make it a module constant: it is known by its identity."""
 
     cull: str = "none"
     """back, front or none; counter-clockwise triangles face front."""
@@ -84,36 +84,32 @@ DEFAULT = RasterState()
 SCENE = RasterState(cull="back", depth_test="lequal")
 
 
-def apply(gl: c.GL, state: RasterState) -> None:
-    """Set every piece of state that RasterState covers."""
-    _switch(gl, c.CULL_FACE, state.cull != "none")
-    if state.cull != "none":
-        gl.glCullFace(_FACES[state.cull])
-    depth = state.depth_test != "none"
-    _switch(gl, c.DEPTH_TEST, depth)
-    if depth:
-        gl.glDepthFunc(_COMPARE[state.depth_test])
-    gl.glDepthMask(state.depth_write and depth)
-    _switch(gl, c.DEPTH_CLAMP, state.depth_clamp)
-    _apply_blend(gl, state.blend)
-    stencil = state.stencil
-    _switch(gl, c.STENCIL_TEST, stencil is not None)
-    if stencil is not None:
-        gl.glStencilFunc(_COMPARE[stencil.test], stencil.reference, stencil.read_mask)
-        gl.glStencilOp(
-            _STENCIL_OPS[stencil.fail],
-            _STENCIL_OPS[stencil.depth_fail],
-            _STENCIL_OPS[stencil.on_pass],
-        )
-        gl.glStencilMask(stencil.write_mask)
-    if isinstance(state.color_mask[0], tuple):
-        for target, mask in enumerate(state.color_mask):
-            gl.glColorMaski(target, *mask)
-    else:
-        gl.glColorMask(*state.color_mask)
-    _switch(gl, c.POLYGON_OFFSET_FILL, state.polygon_offset is not None)
-    if state.polygon_offset is not None:
-        gl.glPolygonOffset(*state.polygon_offset)
+def apply(gl: c.GL, state: RasterState, before: RasterState | None = None) -> None:
+    """Set every piece of state in which ``state`` differs from ``before`` (None: unknown)."""
+    if before is None or state.cull != before.cull:
+        _switch(gl, c.CULL_FACE, state.cull != "none")
+        if state.cull != "none":
+            gl.glCullFace(_FACES[state.cull])
+    if before is None or (state.depth_test, state.depth_write) != (
+        before.depth_test, before.depth_write,
+    ):  # fmt: skip
+        depth = state.depth_test != "none"
+        _switch(gl, c.DEPTH_TEST, depth)
+        if depth:
+            gl.glDepthFunc(_COMPARE[state.depth_test])
+        gl.glDepthMask(state.depth_write and depth)
+    if before is None or state.depth_clamp != before.depth_clamp:
+        _switch(gl, c.DEPTH_CLAMP, state.depth_clamp)
+    if before is None or state.blend != before.blend:
+        _apply_blend(gl, state.blend)
+    if before is None or state.stencil != before.stencil:
+        _apply_stencil(gl, state.stencil)
+    if before is None or state.color_mask != before.color_mask:
+        _apply_color_mask(gl, state.color_mask)
+    if before is None or state.polygon_offset != before.polygon_offset:
+        _switch(gl, c.POLYGON_OFFSET_FILL, state.polygon_offset is not None)
+        if state.polygon_offset is not None:
+            gl.glPolygonOffset(*state.polygon_offset)
 
 
 def prepare_clear(gl: c.GL) -> None:
@@ -134,6 +130,26 @@ def _apply_blend(gl: c.GL, blend: str | tuple[str | None, ...] | None) -> None:
     _switch(gl, c.BLEND, blend is not None)
     if blend is not None:
         gl.glBlendFuncSeparate(*_BLENDS[blend])
+
+
+def _apply_stencil(gl: c.GL, stencil: Stencil | None) -> None:
+    _switch(gl, c.STENCIL_TEST, stencil is not None)
+    if stencil is not None:
+        gl.glStencilFunc(_COMPARE[stencil.test], stencil.reference, stencil.read_mask)
+        gl.glStencilOp(
+            _STENCIL_OPS[stencil.fail],
+            _STENCIL_OPS[stencil.depth_fail],
+            _STENCIL_OPS[stencil.on_pass],
+        )
+        gl.glStencilMask(stencil.write_mask)
+
+
+def _apply_color_mask(gl: c.GL, color_mask: ColorMask | tuple[ColorMask, ...]) -> None:
+    if isinstance(color_mask[0], tuple):
+        for target, mask in enumerate(color_mask):
+            gl.glColorMaski(target, *mask)
+    else:
+        gl.glColorMask(*color_mask)
 
 
 def _switch(gl: c.GL, capability: int, on: bool) -> None:

@@ -1,4 +1,4 @@
-"""GPU time of each pass by timestamps, read frames later so that nothing waits."""
+"""GPU time of each pass by timestamps, read frames later and when asked for: nothing waits."""
 
 from __future__ import annotations
 
@@ -32,12 +32,24 @@ class PassTimers:
         self._gl = gl
         self._spare: list[int] = []
         self._pending: list[_Frame] = []
+        self._finished: _Frame | None = None
+        """The newest frame that the GPU has finished, until somebody wants to know its times."""
+        self._timings: list[PassTiming] = []
+        self._frame_ms = 0.0
         self.made = 0
         """Queries made so far."""
-        self.timings: list[PassTiming] = []
+
+    @property
+    def timings(self) -> list[PassTiming]:
         """Passes of the newest finished frame."""
-        self.frame_ms = 0.0
+        self._read()
+        return self._timings
+
+    @property
+    def frame_ms(self) -> float:
         """GPU time from the start of its first pass to the end of its last."""
+        self._read()
+        return self._frame_ms
 
     def begin(self, count: int) -> list[int]:
         """``count + 1`` queries for a frame of ``count`` passes."""
@@ -57,7 +69,7 @@ class PassTimers:
         self._spare.extend(queries)
 
     def collect(self, wait: bool = False) -> None:
-        """Read the frames that the GPU has finished; with ``wait``, all of them."""
+        """See which frames the GPU has finished; with ``wait``, it has finished all of them."""
         available = ctypes.c_int()
         while self._pending:
             frame = self._pending[0]
@@ -67,24 +79,31 @@ class PassTimers:
                 )
                 if not available.value:
                     return
-            self._pending.pop(0)
-            self._read(frame)
+            if self._finished is not None:
+                self._spare.extend(self._finished.queries)
+            self._finished = self._pending.pop(0)
 
-    def _read(self, frame: _Frame) -> None:
+    def _read(self) -> None:
+        frame, self._finished = self._finished, None
+        if frame is None:
+            return
         value = ctypes.c_uint64()
         stamps = []
         for query in frame.queries:
             self._gl.glGetQueryObjectui64v(query, c.QUERY_RESULT, ctypes.byref(value))
             stamps.append(value.value)
-        self.timings = [
+        self._timings = [
             PassTiming(name, (stamps[i + 1] - stamps[i]) * 1e-6, frame.cpu_ms[i])
             for i, name in enumerate(frame.names)
         ]
-        self.frame_ms = (stamps[-1] - stamps[0]) * 1e-6
+        self._frame_ms = (stamps[-1] - stamps[0]) * 1e-6
         self._spare.extend(frame.queries)
 
     def release(self) -> None:
         """Delete every query."""
+        if self._finished is not None:
+            self._pending.append(self._finished)
+            self._finished = None
         for frame in self._pending:
             self._spare.extend(frame.queries)
         self._pending.clear()
