@@ -96,7 +96,8 @@ def open_scene(name: str | None, assignments: Iterable[str]) -> tuple[Scene, Set
         with named_by(file, field, name):
             radiance = read_environment(named_file(settings["sky.image"], scene.folder))
         scene.environment = Environment(radiance, np.ones(3, np.float32), 1.0)
-    if settings["scene.default_lights"] and is_unlit(scene):
+    asked_lights = settings["scene.default_lights"]
+    if asked_lights == "on" or (asked_lights == "auto" and is_unlit(scene)):
         add_default_lights(scene)
     note_emission_only(scene)
     return scene, settings

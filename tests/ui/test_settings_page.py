@@ -166,7 +166,7 @@ def test_the_default_sun_comes_and_goes(hands: Hands, scene_file: Path) -> None:
     robot = hands(unlit)
     before = robot.pixels()
     assert [light.name for light in robot.desk.document.state.lights] == ["default sun"]
-    robot.desk.document.set("scene.default_lights", False)
+    robot.desk.document.set("scene.default_lights", "off")
     robot.frames(2)
     assert robot.desk.document.state.lights == ()
     assert robot.pixels()[..., :3].max() < before[..., :3].max()

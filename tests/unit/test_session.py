@@ -45,11 +45,21 @@ def test_a_scene_opens_with_its_settings(tmp_path: Path) -> None:
 def test_a_scene_that_only_its_emission_lights_says_so(tmp_path: Path) -> None:
     path = write_corner(tmp_path)
     scene, _ = open_scene(str(path), ())
-    reason = "lit by its own emission only; --set sky.image=FILE adds a sky"
-    assert scene.notes == [f"{path}: {reason}"]
+    [note] = scene.notes
+    assert note.startswith(f"{path}: lit by its own emission only; --set scene.default_lights=on")
     write_exr(tmp_path / "sky.exr", np.full((2, 4, 3), 0.5, np.float32))
     scene, _ = open_scene(str(path), [f"sky.image={tmp_path / 'sky.exr'}"])
     assert scene.notes == []
+    scene, _ = open_scene(str(path), ["scene.default_lights=on"])
+    assert [light.name for light in scene.lights] == ["default sun"]
+    assert scene.environment is not None
+    assert scene.notes == [f"{path}: a default sun and sky light it"]
+    words = [f"sky.image={tmp_path / 'sky.exr'}", "scene.default_lights=on"]
+    scene, _ = open_scene(str(path), words)
+    assert scene.environment is not None
+    assert scene.environment.radiance is not None  # the image, not the default's plain sky
+    with pytest.raises(InputError, match="default_lights"):
+        open_scene(str(path), ["scene.default_lights=true"])
 
 
 def test_the_exposure_of_a_bright_sun_is_noted_unless_another_is_asked_for(tmp_path: Path) -> None:

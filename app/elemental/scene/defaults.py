@@ -37,7 +37,10 @@ def is_lit_by_emission_only(scene: Scene) -> bool:
 def note_emission_only(scene: Scene) -> None:
     """Say in the notes of a scene that only its own emission lights it."""
     if is_lit_by_emission_only(scene):
-        reason = "lit by its own emission only; --set sky.image=FILE adds a sky"
+        reason = (
+            "lit by its own emission only; --set scene.default_lights=on adds a sun and a sky, "
+            "--set sky.image=FILE a sky"
+        )
         scene.notes.append(f"{scene.path}: {reason}")
 
 
@@ -52,10 +55,13 @@ def _emits(scene: Scene) -> bool:
 
 
 def add_default_lights(scene: Scene) -> None:
-    """Give the scene a sun and a constant sky, and say so in its notes."""
+    """Give the scene a sun and, unless it has surroundings, a constant sky; say so in its notes."""
+    lit = "a default sun and sky light it"
+    reason = f"no light or emission: {lit}" if is_unlit(scene) else lit
     scene.lights.append(default_sun())
-    scene.environment = Environment(None, np.array(SKY_TINT, np.float32), SKY_RADIANCE)
-    scene.notes.append(f"{scene.path}: no light or emission: a default sun and sky light it")
+    if scene.environment is None:
+        scene.environment = Environment(None, np.array(SKY_TINT, np.float32), SKY_RADIANCE)
+    scene.notes.append(f"{scene.path}: {reason}")
 
 
 def default_sun() -> Light:

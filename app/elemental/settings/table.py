@@ -56,8 +56,9 @@ TABLE = (
         unit="MiB", lo=16, hi=16384,
     ),
     Setting(
-        "scene.default_lights", "bool", True,
-        "a default sun and sky for a scene without any light or emission",
+        "scene.default_lights", "choice", "auto",
+        "a sun and a sky that no file names; auto: for scenes without any light or emission",
+        choices=("auto", "on", "off"),
     ),
     Setting(
         "scene.animation", "text", "all",
