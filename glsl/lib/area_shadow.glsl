@@ -1,4 +1,4 @@
-// Cones towards emissive parallelograms: how much of them a surface point sees.
+// Cones towards area lights: how much of them a surface point sees.
 // [Mittring12 "Voxel Lighting": shadowed area lights from emissive materials]
 
 #include "lib/area_light.glsl"
@@ -21,8 +21,10 @@ float area_visibility(vec3 p_ws, vec3 normal, int face, vec3 point_ws, float rad
     vec3 path = point_ws - origin;
     float way = max(length(path), 1e-6);
     vec3 direction = path / way;
-    float height = abs(height_over_face(u_area_lights.faces[face], origin));
-    float cosine = height / way;
+    float height = height_over_light(u_area_lights.faces[face], origin);
+    // Before a ball all cones end at the distance of its nearest point.
+    bool is_ball = u_area_lights.faces[face].ball_radius > 0.0;
+    float cosine = is_ball ? 1.0 : height / way;
     float end = min(way - AREA_END * voxel, (height - AREA_END * voxel) / max(cosine, 1e-4));
     float half_angle = atan(radius * sqrt(cosine), way);
     Clearance leaves = Clearance(AREA_NORMAL_BIAS, dot(normal, direction));

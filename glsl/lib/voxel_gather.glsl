@@ -19,8 +19,8 @@ const float AREA_GAP_VOXELS = 1.5;
 vec3 area_light_radiance(vec3 p_ws, vec3 normal, float spacing) {
     vec3 sum = vec3(0.0);
     for (int i = 0; i < u_area_lights.count; ++i) {
-        AreaLight face = u_area_lights.faces[i];
-        if (abs(height_over_face(face, p_ws)) < AREA_GAP_VOXELS * spacing) continue;
+        if (height_over_light(u_area_lights.faces[i], p_ws) < AREA_GAP_VOXELS * spacing) continue;
+        AreaLight face = seen_from(u_area_lights.faces[i], p_ws);
         float unshadowed = face_irradiance(face, p_ws, normal);
         if (unshadowed <= 0.0) continue;
         vec3 middle = face.corner_ws + 0.5 * (face.edge_u_ws + face.edge_v_ws);

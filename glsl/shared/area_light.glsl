@@ -1,13 +1,13 @@
-// Emissive parallelograms: points are corner + s edge_u + t edge_v with s, t in 0..1.
+// Emissive parallelograms: points are corner + s edge_u + t edge_v with s, t in 0..1. And balls.
 const int AREA_LIGHTS_MAX = 16;
 
 struct AreaLight {
-    vec3 corner_ws;
+    vec3 corner_ws;     // of a ball its centre
     float both_sides;   // 1: the back emits too
     vec3 edge_u_ws;     // m; cross(edge_u, edge_v) points to the front
     float area_m2;
     vec3 edge_v_ws;
-    float reserved0;
+    float ball_radius;  // m; 0: a parallelogram
     vec3 radiance;      // W/(m^2 sr)
     float reserved1;
 };

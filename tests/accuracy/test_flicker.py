@@ -61,13 +61,19 @@ def found(device: Device) -> Any:
 
 
 def test_what_a_ball_hardly_lights_hardly_changes(found: tuple[Flicker, Any, Any]) -> None:
-    """By 0.08 % from frame to frame, root of the mean square; 99.9 % of it by less than 1.3 %."""
+    """By 0.05 % from frame to frame, root of the mean square; 99.9 % of it by less than 0.5 %."""
     made, _, _ = found
     print(made)
     assert made.far > 0.45
-    assert 0.0 < made.deviation < 0.0008
-    assert made.most < 0.013
-    assert made.jitter < 0.0006
+    assert 0.0 < made.deviation < 0.0005
+    assert made.most < 0.005
+    assert made.jitter < 0.0003
+
+
+def test_what_a_ball_lights_goes_with_it_smoothly(found: tuple[Flicker, Any, Any]) -> None:
+    """As an area light; as voxels, in their steps, it jitters by 4.6 % (`gi.area_lights=false`)."""
+    made, _, _ = found
+    assert 0.0 < made.lit_jitter < 0.03
 
 
 def test_what_it_left_is_as_it_was(found: tuple[Flicker, Any, Any]) -> None:

@@ -1,4 +1,4 @@
-"""Light from parallelograms against closed forms and sums. GI-15"""
+"""Light from parallelograms and balls against closed forms and sums. GI-15"""
 
 from __future__ import annotations
 
@@ -94,6 +94,51 @@ def test_the_back_is_dark_unless_both_sides_emit(device: Device) -> None:
     np.testing.assert_allclose(both, below, rtol=1e-5)
 
 
+def ball(centre: tuple[float, float, float], radius: float, radiance: float = 1.0) -> AreaLight:
+    none = np.zeros(3, np.float32)
+    edge = np.array([radius, 0, 0], np.float32)
+    return AreaLight(0, np.array(centre, np.float32), edge, none, np.full(3, radiance), False)
+
+
+def test_a_ball_above_the_horizon(device: Device) -> None:
+    """pi sin^2(half angle) by the cosine to its centre, from afar and from near."""
+    rng = np.random.default_rng(7)
+    centre, radius = np.array([0.2, 0.3, -0.1]), 0.4
+    away = rng.normal(size=(80, 3))
+    away /= np.linalg.norm(away, axis=1, keepdims=True)
+    distance = radius * rng.uniform(1.2, 9.0, 80)[:, None]
+    p = centre + away * distance
+    normal = -away + 0.15 * rng.normal(size=(80, 3))
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    sine = (radius / distance)[:, 0]
+    cosine = -(away * normal).sum(1)
+    whole = cosine > sine
+    assert whole.sum() > 50
+    found = irradiance(device, [ball(tuple(centre), radius)], p, normal)
+    np.testing.assert_allclose(found[whole], (np.pi * sine**2 * cosine)[whole], rtol=0.02)
+
+
+def test_a_ball_that_the_horizon_cuts(device: Device) -> None:
+    """Against a sum over the directions in which it is seen."""
+    rng = np.random.default_rng(8)
+    directions = rng.normal(size=(400_000, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    centre = np.array([0.0, 0.2, 1.0])
+    found = irradiance(device, [ball(tuple(centre), 0.5)], np.zeros(3), UP)
+    along = directions @ centre
+    seen = (along > 0.0) & (centre @ centre - along**2 < 0.25)
+    wanted = 4.0 * np.pi * np.mean(seen * np.maximum(directions[:, 1], 0.0))
+    np.testing.assert_allclose(found, wanted, rtol=0.03)
+
+
+def test_a_ball_is_dark_within_and_below_the_horizon(device: Device) -> None:
+    p = np.array([[0, 0, 0], [0.3, 0, 0], [0, 0.5, 0], [0, 0.501, 0], [0, 2, 0]], float)
+    found = irradiance(device, [ball((0, 0, 0), 0.5)], p, UP)
+    np.testing.assert_array_equal(found, 0.0)
+    below = irradiance(device, [ball((0, 0, 0), 0.5)], p[4], -UP)
+    assert below[0] == pytest.approx(np.pi / 16.0, rel=0.01)
+
+
 STRATA = """
 vec4 stratum(vec3 p, vec3 n, int k) {
     AreaSample s = sample_area_lights(p, n, k);
@@ -161,6 +206,23 @@ def test_a_ray_meets_the_nearest_face_that_it_points_at(device: Device) -> None:
     np.testing.assert_allclose(found[1, 1], 0.5, atol=0.01)  # along its edge
     assert found[2, 1] == 0.0  # beside it
     assert found[3, 1] == 0.0  # from behind
+
+
+def test_a_ray_meets_a_round_ball(device: Device) -> None:
+    """A thin cone at its true distance; a wide one is covered by the ratio of the discs."""
+    x = np.array([0.0, 0.3, 0.48, 0.52, 0.0, 0.0])
+    inputs = {
+        "p": np.stack([x, 0 * x, 0 * x], 1).astype(np.float32),
+        "d": np.tile(UP, (6, 1)).astype(np.float32),
+        "a": np.array([1e-4] * 4 + [np.arctan(0.5), 1e-4], np.float32),
+    }
+    inputs["p"][5, 1] = 4.0  # behind
+    params = {"AreaLights": pack_area_lights([ball((0, 2, 0), 0.5)])}
+    found = run_glsl(device, LIB, HIT, inputs, "vec4", functions=HIT_FUNCTION, params=params)
+    np.testing.assert_allclose(found[:3, 1], 1.0, atol=1e-4)
+    np.testing.assert_allclose(found[:3, 0], 2.0 - np.sqrt(0.25 - x[:3] ** 2), rtol=1e-3)
+    np.testing.assert_array_equal(found[[3, 5], 1], 0.0)
+    assert found[4, 1] == pytest.approx(0.25, rel=1e-3)
 
 
 @pytest.mark.parametrize("tiles", [1, 2, 4, 8])

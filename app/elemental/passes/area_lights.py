@@ -16,8 +16,11 @@ def pack_area_lights(lights: Sequence[AreaLight]) -> Block:
     """The AreaLights block of glsl/shared/area_light.glsl; at most FACES_MAX of them."""
     # A parallelogram without extent would divide by its area: those that are left over have one.
     unused = FACES_MAX - len(lights)
+    radii = [light.ball_radius for light in lights]
     edges_u = np.array([light.edge_u for light in lights] + [(1.0, 0.0, 0.0)] * unused)
     edges_v = np.array([light.edge_v for light in lights] + [(0.0, 1.0, 0.0)] * unused)
+    edges_u[: len(lights)][np.array(radii, bool)] = 1.0, 0.0, 0.0
+    edges_v[: len(lights)][np.array(radii, bool)] = 0.0, 1.0, 0.0
     brightest = max((float(light.radiance.max()) for light in lights), default=0.0)
     inverse = 1.0 / brightest if brightest > 0.0 else 1.0
     faces = pack_array(
@@ -28,6 +31,7 @@ def pack_area_lights(lights: Sequence[AreaLight]) -> Block:
         edge_v_ws=edges_v,
         area_m2=np.linalg.norm(np.cross(edges_u, edges_v), axis=1),
         radiance=[light.radiance for light in lights] + [np.zeros(3)] * unused,
+        ball_radius=radii + [0.0] * unused,
         both_sides=[float(light.both_sides) for light in lights] + [0.0] * unused,
     )
     return pack(

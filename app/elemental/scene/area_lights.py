@@ -1,4 +1,6 @@
-"""Emissive parallelograms, whose light is known in closed form; other emitters shine as voxels.
+"""Emissive parallelograms and balls, whose light is known in closed form.
+
+Other emitters shine as voxels.
 
 [Mittring12 "Voxel Lighting": shadowed area lights from emissive materials]
 """
@@ -19,18 +21,28 @@ FACES_MAX = 16
 """AREA_LIGHTS_MAX of glsl/shared/area_light.glsl."""
 LEAST_SHARE = 0.01
 """Of the scene's flux: what makes less is left to the voxels, where it costs nothing more."""
+LEAST_SHARE_MOVING = 0.001
+"""Of what can move: as voxels its light would go in steps of the lattice."""
+ROUNDNESS = 0.02
+"""How far vertices of a ball may be off their mean distance, of it; its scales, off each other."""
+LEAST_BALL = 0.85
+"""Of a ball's volume, that a mesh with its vertices fills at least: one of 80 faces does."""
+DOME = 0.25
+"""Radius by the scene's diagonal from which on a ball that shines inwards too is taken for a dome
+[inferred: one around the scene has 0.29 at least, and is a part of it]."""
 FLATNESS = 1e-3
 """How far a corner may be off the parallelogram's, by the length of its diagonal."""
 
 
 @dataclass(frozen=True)
 class AreaLight:
-    """A face that emits the same radiance everywhere and in all directions before it.
+    """A face, or a ball, that emits the same radiance everywhere and in all directions before it.
 
     corner, edge_u, edge_v (3,) float32 m, world space: points are corner + s edge_u + t edge_v with
-    s, t in 0..1, and cross(edge_u, edge_v) points to its front; radiance (3,) float32 nit;
-    `instance` is the index of what it belongs to in Scene.instances; `face` (3, 3) float64 are
-    corner and edges in that instance's own space.
+    s, t in 0..1, and cross(edge_u, edge_v) points to its front; of a ball the corner is the centre,
+    edge_u a radius, and edge_v nothing. radiance (3,) float32 nit; `instance` is the index of what
+    it belongs to in Scene.instances; `face` (3, 3) float64 are corner and edges in that instance's
+    own space.
     """
 
     instance: int
@@ -42,31 +54,43 @@ class AreaLight:
     face: npt.NDArray[np.float64] = field(default_factory=lambda: np.eye(3), repr=False)
 
     @property
+    def ball_radius(self) -> float:
+        """m; 0 where it is a parallelogram."""
+        return 0.0 if self.edge_v.any() else float(np.linalg.norm(self.edge_u))
+
+    @property
     def flux(self) -> float:
         """Emitted by the front, summed over the three channels, W."""
+        if self.ball_radius > 0.0:
+            return float(4.0 * math.pi**2 * self.ball_radius**2 * self.radiance.sum())
         area = np.linalg.norm(np.cross(self.edge_u.astype(float), self.edge_v.astype(float)))
         return float(math.pi * area * self.radiance.sum())
 
 
 def area_lights(scene: Scene) -> list[AreaLight]:
-    """The faces of all instances that emit evenly and are made of few parallelograms.
+    """The faces of all instances that emit evenly and are balls or made of few parallelograms.
 
     Of an instance all faces or none; the strongest first, at most FACES_MAX.
     """
     faces_of = {
-        number: parallelograms(mesh)
+        number: ball(mesh) if (faces := parallelograms(mesh)) is None else faces
         for number, mesh in enumerate(scene.meshes)
         if _emits_evenly(scene, mesh)
     }
-    least = LEAST_SHARE * _flux_from_outside(scene)
+    outside = _flux_from_outside(scene)
     lamps = []
     for number, instance in enumerate(scene.instances):
         faces = faces_of.get(instance.mesh)
         if faces is None or instance.skin >= 0 or instance.weights is not None:
             continue
         lamp = [_placed(scene, number, face, instance.world_from_local) for face in faces]
+        if lamp[0].ball_radius > 0.0 and not (
+            _keeps_round(instance.world_from_local) and _seen_from_outside(lamp[0], scene)
+        ):
+            continue
         flux = sum(face.flux for face in lamp)
-        if flux > least:
+        least = LEAST_SHARE_MOVING if instance.dynamic else LEAST_SHARE
+        if flux > least * outside:
             lamps.append((flux, lamp))
     lamps.sort(key=lambda entry: -entry[0])
     chosen: list[AreaLight] = []
@@ -112,6 +136,38 @@ def parallelograms(mesh: Mesh) -> npt.NDArray[np.float64] | None:
         left.pop(found[0])
         faces.append(found[1])
     return np.array(faces)
+
+
+def ball(mesh: Mesh) -> npt.NDArray[np.float64] | None:
+    """(1, 3, 3) centre, radius along x, and nothing: a ball of the mesh's area, in its own space.
+
+    None where the triangles do not enclose one whose front is outside.
+    """
+    triangles = mesh.positions[mesh.indices.reshape(-1, 3)].astype(np.float64)
+    if len(triangles) < 8:
+        return None
+    centre = 0.5 * (triangles.min(axis=(0, 1)) + triangles.max(axis=(0, 1)))
+    a, b, c = np.moveaxis(triangles - centre, 1, 0)
+    distances = np.linalg.norm(triangles - centre, axis=2)
+    mean = float(distances.mean())
+    volume = float((a * np.cross(b, c)).sum()) / 6.0
+    if mean <= 0.0 or np.ptp(distances) > ROUNDNESS * mean:
+        return None
+    if volume < LEAST_BALL * 4.0 / 3.0 * math.pi * mean**3:
+        return None
+    area = 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+    return np.array([[centre, (math.sqrt(area / (4.0 * math.pi)), 0.0, 0.0), np.zeros(3)]])
+
+
+def _keeps_round(world_from_local: FloatArray) -> bool:
+    scales = np.linalg.svd(world_from_local[:3, :3].astype(np.float64), compute_uv=False)
+    return bool(scales[0] - scales[2] <= ROUNDNESS * scales[0])
+
+
+def _seen_from_outside(light: AreaLight, scene: Scene) -> bool:
+    """Whether a ball is no dome around the scene, whose inside shines."""
+    low, high = scene.bounds()
+    return not light.both_sides or light.ball_radius < DOME * float(np.linalg.norm(high - low))
 
 
 def _join(a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> FloatArray | None:

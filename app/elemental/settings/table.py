@@ -19,7 +19,7 @@ TABLE = (
     ),
     Setting(
         "gi.area_lights", "bool", True,
-        "emissive parallelograms light by closed form, through aimed cones; off: as voxels",
+        "emissive faces and balls light by closed form, through aimed cones; off: as voxels",
         source="[Mittring12] [Heitz18]",
     ),
     Setting(

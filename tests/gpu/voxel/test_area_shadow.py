@@ -1,4 +1,4 @@
-"""Emissive parallelograms light surfaces and are shadowed by what stands before them. GI-15"""
+"""Emissive faces and balls light surfaces and are shadowed by what stands before them. GI-15"""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from elemental.passes.area_lights import pack_area_lights
 from elemental.scene.area_lights import AreaLight, area_lights
 from elemental.scene.model import Scene
 from glsl.harness import run_glsl
-from gpu.rig import at, scene, vector
+from gpu.rig import at, mesh, scene, vector
 from gpu.voxel.scenes import colored, glowing, part, turned
 from gpu.voxel.stage import Stage
-from shapes import box, quad
+from shapes import box, quad, sphere
 
 Array = npt.NDArray[Any]
 TILTS = {"straight": 0.0, "turned": 0.4, "diagonal": np.pi / 4}
@@ -112,3 +112,51 @@ def test_an_occluder_throws_its_umbra_and_penumbra(device: Device, tilt: float) 
     assert share[exact == 1.0].min() > 0.9
     # A body's voxels reach about a voxel beyond it, here 4 % of the occluder's side at either end.
     assert np.abs(share - exact).mean() < 0.08
+
+
+def under_a_ball(blocker: float | None) -> Scene:
+    """`room` with a ball of 0.8 m in the lamp's place."""
+    lit = room(0.0, blocker)
+    lit.meshes[1], lit.instances[1].world_from_local = mesh(sphere(0.4, 24), 1), at(0, 2, 0)
+    return lit
+
+
+def test_an_open_floor_gets_all_of_a_balls_light(device: Device) -> None:
+    """The ball's own voxels and the floor's don't hide it."""
+    lit = under_a_ball(None)
+    stage = Stage(device, lit, 64)
+    x = np.linspace(-1.8, 1.8, 37)
+    found = arrives(stage, area_lights(lit), *floor_points(0.0, x))
+    stage.release()
+    np.testing.assert_allclose(found[:, 0], found[:, 1], rtol=0.02)
+    squared = 4.0 + x**2
+    np.testing.assert_allclose(found[:, 1], 10 * np.pi * 0.16 * 2 / squared**1.5, rtol=0.02)
+
+
+def test_an_occluder_hides_a_ball(device: Device) -> None:
+    lit = under_a_ball(0.8)
+    stage = Stage(device, lit, 128)
+    x = np.linspace(-1.8, 1.8, 73)
+    found = arrives(stage, area_lights(lit), *floor_points(0.0, x))
+    stage.release()
+    share = found[:, 0] / found[:, 1]
+    rng = np.random.default_rng(5)
+    surface = rng.normal(size=(4000, 3))
+    surface *= 0.4 / np.linalg.norm(surface, axis=1, keepdims=True)
+    exact = np.array([_open(px, surface + vector(0, 2, 0)) for px in x])
+    assert share[exact == 0.0].max() < 0.03
+    assert share[exact == 1.0].min() > 0.9
+    assert np.abs(share - exact).mean() < 0.08
+
+
+def _open(px: float, points: Array) -> float:
+    """Share of the directions to a ball's points in front that pass the box at 1 m."""
+    path = points - [px, 0, 0]
+    front = (path * (points - [0, 2, 0])).sum(1) < 0.0
+    facing = np.where(front, -(path * (points - [0, 2, 0])).sum(1), 0.0)
+    weight = facing * path[:, 1] / (path**2).sum(1) ** 2
+    passes = np.ones(len(points), bool)
+    for y in (0.95, 1.05):
+        at_y = path * (y / path[:, 1:2])
+        passes &= (np.abs(px + at_y[:, 0]) > 0.4) | (np.abs(at_y[:, 2]) > 0.4)
+    return float((weight * passes).sum() / weight.sum())

@@ -1,4 +1,4 @@
-"""Which emitters are parallelograms. GI-15"""
+"""Which emitters are parallelograms and balls. GI-15"""
 
 from __future__ import annotations
 
@@ -7,11 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from elemental.scene.area_lights import FACES_MAX, area_lights, parallelograms
+from elemental.scene.area_lights import FACES_MAX, area_lights, followed, parallelograms
+from elemental.scene.evaluate import evaluate
 from elemental.scene.model import Scene, TextureSlot
 from gpu.rig import UNLIT, at, mesh, scene, sun, vector
 from gpu.voxel.scenes import colored, glowing, part, turned
-from shapes import Shape, box, quad, sphere
+from shapes import Shape, box, inward, quad, sphere, torus
 
 
 def of(shape: Shape, **fields: object) -> Scene:
@@ -70,9 +71,80 @@ def _kite() -> Shape:
     return positions, indices
 
 
-@pytest.mark.parametrize("shape", [sphere(0.5, 8), _kite()], ids=["sphere", "kite"])
+def _dented() -> Shape:
+    positions, indices = sphere(0.5)
+    positions[100] *= 0.9
+    return positions, indices
+
+
+def _ellipsoid() -> Shape:
+    positions, indices = sphere(0.5)
+    return positions * np.array([1.0, 1.05, 1.0]), indices
+
+
+def _half() -> Shape:
+    positions, indices = sphere(0.5)
+    return positions, indices[: len(indices) // 2]
+
+
+OTHERS = {
+    "torus": torus(0.4, 0.1),
+    "kite": _kite(),
+    "coarse ball": sphere(0.5, 4),
+    "dented ball": _dented(),
+    "ellipsoid": _ellipsoid(),
+    "half a ball": _half(),
+    "hollow": inward(sphere(0.5)),
+}
+
+
+@pytest.mark.parametrize("shape", OTHERS.values(), ids=OTHERS)
 def test_other_shapes_are_left_to_the_voxels(shape: Shape) -> None:
     assert area_lights(of(shape)) == []
+
+
+def test_a_ball_is_one_light_with_the_power_of_its_mesh() -> None:
+    """Wherever it is, turned and scaled; not where it is stretched, nor a dome around the scene."""
+    matrix = turned(vector(1, 0, 0.3), 0.7, to=(1, 2, 3)) @ np.diag([2, 2, 2, 1])
+    shape = sphere(0.25, 8)
+    base = of(shape, double_sided=True)
+    base.instances[1] = replace(base.instances[1], world_from_local=matrix.astype(np.float32))
+    (light,) = area_lights(base)
+    triangles = shape[0][shape[1].reshape(-1, 3)].astype(float)
+    edges = np.diff(triangles, axis=1)
+    area = 4.0 * 0.5 * np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1).sum()
+    assert light.flux == pytest.approx(3 * np.pi * 10.0 * area, rel=1e-5)
+    assert light.ball_radius == pytest.approx(np.sqrt(area / (4 * np.pi)), rel=1e-5)
+    np.testing.assert_allclose(light.corner, [1, 2, 3], atol=1e-6)
+    stretched = (matrix @ np.diag([1, 1.1, 1, 1])).astype(np.float32)
+    base.instances[1] = replace(base.instances[1], world_from_local=stretched)
+    assert area_lights(base) == []
+    assert area_lights(of(sphere(9.0), double_sided=True)) == []
+    assert len(area_lights(of(sphere(9.0)))) == 1
+
+
+def test_a_ball_goes_where_its_pose_is() -> None:
+    base = of(sphere(0.25))
+    base.instances[1].dynamic = True
+    pose = evaluate(base, 0.0)
+    world = pose.world_from_local.copy()
+    world[0] = at(3, 0, 1)
+    (light,) = followed(base, area_lights(base), replace(pose, world_from_local=world))
+    np.testing.assert_allclose(light.corner, [3, 0, 1], atol=1e-6)
+    assert light.ball_radius == pytest.approx(0.25, rel=0.01)
+
+
+@pytest.mark.parametrize(("dynamic", "lights"), [(False, 0), (True, 1)])
+def test_a_weak_lamp_counts_where_it_can_move(dynamic: bool, lights: int) -> None:
+    base = of(sphere(0.25))
+    (light,) = area_lights(base)
+    base.lights.append(sun(vector(0, -1, 0)))
+    strength = float(base.lights[0].strength.sum())
+    low, high = base.bounds()
+    disc = np.pi * 0.25 * float(((high - low) ** 2).sum())
+    base.lights[0] = sun(vector(0, -1, 0), light.flux / (0.003 * disc * strength))
+    base.instances[1].dynamic = dynamic
+    assert len(area_lights(base)) == lights
 
 
 def test_textured_masked_and_unlit_emitters_are_left_to_the_voxels() -> None:

@@ -1,4 +1,4 @@
-"""Emissive parallelograms seen through cones. [Mittring12 "Voxel Lighting": shadowed area lights
+"""Emissive faces and balls seen through cones. [Mittring12 "Voxel Lighting": shadowed area lights
 from emissive materials], [Segovia06]"""
 
 from __future__ import annotations
