@@ -21,31 +21,42 @@ from elemental.core import transforms
 from elemental.core.layout import layouts
 from elemental.frame import Renderer
 from elemental.gpu.device import Device
-from elemental.scene.model import Camera
+from elemental.scene.model import Camera, Scene
 from elemental.session import Viewpoint, set_stage
 from elemental.settings import Settings
 
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "gallery"
 QUALITY = 80
-LABEL_PX = 14
+LABEL_PX, GAP_PX = 14, 8
+CELL, BLOCKS = (288, 162), 2
+"""Size of a picture of the effects, px; blocks of three beside each other."""
+EYE, TARGET = (5.2, 1.5, 1.0), (9.9, 0.9, 1.5)
+"""Before the glowing crystal, half of the picture dark."""
+CRYSTAL = 4.0
+"""Times as bright as in its scene, so that the frame has what a lens flares of."""
 TEXT, GRID, AXIS = (235, 235, 235), (60, 60, 60), (150, 150, 150)
 MEASURED, ADAPTED = (110, 160, 255), (255, 170, 60)
 
+GHOSTS = {"lens_flare.intensity": 16.0}
 OFF = {
     "eye_adaptation.min_brightness": 0.5, "eye_adaptation.max_brightness": 0.5,
     "bloom.intensity": 0.0, "lens_flare.intensity": 0.0, "vignette.intensity": 0.0,
 }  # fmt: skip
-FLARE = {"lens_flare.threshold": 2.0, "lens_flare.bokeh_size": 4.0}
-FOCUS = {"dof.enabled": True, "dof.focal_distance": 480.0, "dof.near_transition": 200.0}
-DIRT = {"bloom.intensity": 2.0, "bloom.dirt_mask": "dirt.png"}
+GLOW = {"bloom.threshold": 0.5}
+FLARE = {"lens_flare.threshold": 2.5, "lens_flare.bokeh_size": 4.0}
+FOCUS = {"dof.enabled": True, "dof.focal_distance": 390.0, "dof.near_transition": 120.0}
+DIRT = {**GLOW, "bloom.intensity": 2.0, "bloom.dirt_mask": "dirt.png"}
 WHITE = "film.white_point"
 EFFECTS: tuple[tuple[str, tuple[dict[str, Any], dict[str, Any]]], ...] = (
-    ("bloom.intensity 1, 4", ({"bloom.intensity": 1.0}, {"bloom.intensity": 4.0})),
+    ("bloom.intensity 2, 8", ({**GLOW, "bloom.intensity": 2.0}, {**GLOW, "bloom.intensity": 8.0})),
     ("bloom.dirt_intensity 2, 8",
      ({**DIRT, "bloom.dirt_intensity": 2.0}, {**DIRT, "bloom.dirt_intensity": 8.0})),
     ("lens_flare.intensity 8, 16",
      ({**FLARE, "lens_flare.intensity": 8.0}, {**FLARE, "lens_flare.intensity": 16.0})),
-    ("dof.f_stop 4, 2", ({**FOCUS, "dof.f_stop": 4.0}, {**FOCUS, "dof.f_stop": 2.0})),
+    ("lens_flare.bokeh_size 2, 8 %",
+     ({**FLARE, **GHOSTS, "lens_flare.bokeh_size": 2.0},
+      {**FLARE, **GHOSTS, "lens_flare.bokeh_size": 8.0})),
+    ("dof.f_stop 8, 3", ({**FOCUS, "dof.f_stop": 8.0}, {**FOCUS, "dof.f_stop": 3.0})),
     ("motion_blur.amount 0.5, 1", ({"motion_blur.amount": 0.5}, {"motion_blur.amount": 1.0})),
     ("exposure -1, +1", ({"exposure": -1.3}, {"exposure": 0.7})),
     ("film.slope 0.6, 1.2", ({"film.slope": 0.6}, {"film.slope": 1.2})),
@@ -54,9 +65,12 @@ EFFECTS: tuple[tuple[str, tuple[dict[str, Any], dict[str, Any]]], ...] = (
      ({"color_grading.lut": "evening.cube", "color_grading.intensity": 0.5},
       {"color_grading.lut": "evening.cube"})),
     ("vignette.intensity 0.4, 1", ({"vignette.intensity": 0.4}, {"vignette.intensity": 1.0})),
-    ("grain.intensity 0.1, 0.3", ({"grain.intensity": 0.1}, {"grain.intensity": 0.3})),
+    ("grain.intensity 0.1, 0.2", ({"grain.intensity": 0.1}, {"grain.intensity": 0.2})),
     ("scene_color.fringe 0.5, 1",
      ({"scene_color.fringe": 0.5}, {"scene_color.fringe": 1.0})),
+    ("scene_color.tint, half way and all",
+     ({"scene_color.tint": (0.85, 0.95, 1.1)}, {"scene_color.tint": (0.7, 0.9, 1.2)})),
+    ("film.toe 0.45, 0.65", ({"film.toe": 0.45}, {"film.toe": 0.65})),
     ("screen.percentage 75, 50", ({"screen.percentage": 75.0}, {"screen.percentage": 50.0})),
 )  # fmt: skip
 """(what is written beside it, (weak, strong) over OFF)."""
@@ -72,34 +86,40 @@ def main() -> None:
 
 
 def effects(device: Device) -> PIL.Image.Image:
-    """A row an effect: off, weak, strong."""
-    size = (256, 144)
-    stage = set_stage("atrium", (), Viewpoint(camera="floor"), size)
+    """An effect in each block of three: off, weak, strong."""
+    words = ("gi.bounces=1", "gi.resolution=128")
+    stage = set_stage("atrium", words, Viewpoint(eye=EYE, target=TARGET), CELL)
+    brighten(stage.scene, "crystal", CRYSTAL)
     plain = stage.settings.replace(OFF)
-    renderer = Renderer(device, stage.scene, plain, size)
+    renderer = Renderer(device, stage.scene, plain, CELL)
     still = stage.camera
     before = moved(still, (0.0, -0.25, 0.0))  # where motion blur comes from
-    pictures: dict[int, tuple[Any, int]] = {}
+    rows = -(-len(EFFECTS) // BLOCKS)
+    pitch = (3 * CELL[0] + GAP_PX, CELL[1] + LABEL_PX)
+    sheet = PIL.Image.new("RGB", (BLOCKS * pitch[0] - GAP_PX, rows * pitch[1]))
+    pen = PIL.ImageDraw.Draw(sheet)
     frame = 0
-    for _, strengths in EFFECTS:
+    for place, (label, strengths) in enumerate(EFFECTS):
+        left, top = place // rows * pitch[0], place % rows * pitch[1]
+        pen.text((left + 4, top + 1), f"off | {label}", fill=TEXT)
         for number, given in enumerate(({}, *strengths)):
             renderer.set_settings(plain.replace(given))
             renderer.render(before, frame / 30.0, frame)
             picture = renderer.read(renderer.render(still, (frame + 1) / 30.0, frame + 1))
-            pictures[len(pictures)] = (picture[..., :3], number)
             device.finish()
+            image = PIL.Image.fromarray(np.ascontiguousarray(picture[..., :3]))
+            sheet.paste(image, (left + number * CELL[0], top + LABEL_PX))
             frame += 2
     renderer.release()
-    rows = len(EFFECTS)
-    sheet = PIL.Image.new("RGB", (3 * size[0], rows * (size[1] + LABEL_PX)))
-    pen = PIL.ImageDraw.Draw(sheet)
-    for place, (picture, number) in pictures.items():
-        row = place // 3
-        top = row * (size[1] + LABEL_PX)
-        sheet.paste(PIL.Image.fromarray(picture), (number * size[0], top + LABEL_PX))
-        if number == 0:
-            pen.text((4, top + 1), f"off | {EFFECTS[row][0]}", fill=TEXT)
     return sheet
+
+
+def brighten(scene: Scene, name: str, factor: float) -> None:
+    """Have a material of the scene emit more."""
+    for number, material in enumerate(scene.materials):
+        if material.name == name:
+            red, green, blue = (factor * float(part) for part in material.emissive)
+            scene.materials[number] = material.with_value("emissive", (red, green, blue))
 
 
 def moved(camera: Camera, by: tuple[float, float, float]) -> Camera:
