@@ -20,12 +20,21 @@ from cli.xvfb import display
 
 __all__ = ["display"]
 
+SCENE = """[[models]]
+file = "corner.gltf"  # kept
+
+[[volumes]]
+name = "hall"
+center = [0.0, 1.0, 0.0]
+"""
 FINDER = """
 import json, sys
 from pathlib import Path
+import numpy as np
 from elemental.frame import Renderer
 from elemental.session import Viewpoint, set_stage
 from elemental.ui.app import App, Run
+from elemental.ui.in_view import Lens
 from elemental.ui.window import Window
 
 Renderer.resize = lambda self, size: setattr(self, "size", (64, 36))  # quick on any machine
@@ -38,8 +47,13 @@ draw = app.draw
 
 def told(size, wall_s=0.0):
     draw(size, wall_s)
-    state = {"items": widgets.items, "exposure": app.desk.document.state.settings["exposure"],
-             "panel": app.desk.shows_panel, "frame": app.desk.drawn}
+    desk = app.desk
+    [volume] = desk.document.state.volumes
+    center = np.array([volume.center])
+    lens = Lens.of(desk.camera, (desk.extent.low, desk.extent.high), desk.place)
+    state = {"items": widgets.items, "exposure": desk.document.state.settings["exposure"],
+             "panel": desk.shows_panel, "frame": desk.drawn, "center": volume.center,
+             "gizmo": lens.lines(center, center)[0][:2]}
     Path("state.part").write_text(json.dumps(state))
     Path("state.part").replace("state.json")
 
@@ -106,8 +120,29 @@ class Hand:
         self.rest()
 
 
+def drag_a_volume(hand: Hand) -> None:
+    """Choose it in the tree, pull it by the middle of its gizmo, take that back, bring it back."""
+    hand.click("Scene/volume hall")
+    before = hand.told()["center"]
+    x, y = (round(place) for place in hand.told()["gizmo"])
+    hand.act("mousemove", "--window", hand.window, x, y)
+    hand.rest()
+    hand.act("mousedown", 1)
+    for way in (15, 30):
+        hand.act("mousemove", "--window", hand.window, x + way, y)
+        hand.rest()
+    hand.act("mouseup", 1)
+    hand.until(lambda told: told["center"][0] > before[0] + 0.01)
+    hand.rest()
+    moved = hand.told()["center"]
+    hand.act("key", "ctrl+z")
+    hand.until(lambda told: told["center"] == before)
+    hand.act("key", "ctrl+y")
+    hand.until(lambda told: told["center"] == moved)
+
+
 def edit(hand: Hand, scene: Path) -> None:
-    """Search, type, take back, bring back, save, hide the panel, leave."""
+    """Search, type, take back, bring back, picture, save, hide the panel, leave."""
     hand.click("Settings/search")
     hand.act("type", "--delay", 60, "exposure")
     hand.click("Settings/exposure", "ctrl")
@@ -120,6 +155,9 @@ def edit(hand: Hand, scene: Path) -> None:
     hand.until(lambda told: told["exposure"] == 0.0)
     hand.act("key", "ctrl+y")
     hand.until(lambda told: told["exposure"] == 1.5)
+    drag_a_volume(hand)
+    hand.act("key", "F12")
+    hand.until(lambda _: bool(list(scene.parent.glob("elemental-*.png"))))
     hand.act("key", "ctrl+s")
     hand.until(lambda told: "exposure" in scene.read_text())
     hand.act("key", "F5")
@@ -128,12 +166,12 @@ def edit(hand: Hand, scene: Path) -> None:
 
 
 @pytest.mark.skipif(shutil.which("xdotool") is None, reason="xdotool is not installed")
-def test_search_type_undo_save_and_hide(tmp_path: Path, display: str) -> None:
+def test_search_type_drag_undo_save_and_hide(tmp_path: Path, display: str) -> None:
     folder = tmp_path / "work"
     folder.mkdir()
     write_corner(folder)
     scene = folder / "scene.toml"
-    scene.write_text('[[models]]\nfile = "corner.gltf"  # kept\n')
+    scene.write_text(SCENE)
     variables = environment(folder, display)
     quick = ["gi.enabled=false", "shadow.resolution=256", "bloom.intensity=0"]
     with subprocess.Popen(
@@ -148,6 +186,7 @@ def test_search_type_undo_save_and_hide(tmp_path: Path, display: str) -> None:
     assert (process.returncode, stderr) == (0, "")
     written = tomllib.loads(scene.read_text())
     assert written["settings"]["exposure"] == 1.5
+    assert written["volumes"][0]["center"][0] > 0.01
     assert "# kept" in scene.read_text()
     kept = json.loads((tmp_path / "work.config" / "elemental" / "panel.json").read_text())
     assert kept["shows_panel"] is False  # for the next run

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import statistics
 from collections.abc import Callable
 from pathlib import Path
 
@@ -207,9 +206,6 @@ def test_the_panel_costs_at_most_a_fifth_of_a_frame(
 ) -> None:
     """At the program's defaults but for a quarter of the window; tools/panel_cost.py has more."""
     robot = Robot(device, scene_file, "gi.enabled=true", "gi.resolution=64", size=(640, 360))
-    desk = robot.desk
-    robot.frames(3)
-    frames = [panel_cost.frame_ms(desk) for _ in range(5)]
-    _, panel = panel_cost.panel_ms(robot.screen, 5)
+    cost = panel_cost.cost_of(robot.screen, 5)
     robot.screen.release()
-    assert panel < 0.25 * statistics.median(frames)  # a fifth of both together
+    assert cost.share < panel_cost.LIMIT, cost
