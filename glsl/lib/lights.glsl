@@ -4,7 +4,7 @@
 
 // Profiles: intensity over the peak; columns go round the axis, rows from the way the light points to its
 // back. Masks: the share of each primary, as pictures, the first row on top. All repeat.
-uniform sampler2DArray u_light_profiles;
+uniform sampler2DArray u_light_shapes;
 
 struct LightSample {
     vec3 to_light;     // unit
@@ -36,9 +36,9 @@ float profile_falloff(Light light, vec3 to_light) {
     vec2 around = vec2(dot(-to_light, light.profile_axis_ws), dot(-to_light, across));
     float turned = dot(around, around) > 1e-12 ? atan(around.y, around.x) * (0.5 / PI) : 0.0;
     float down = acos(clamp(dot(-to_light, light.direction_ws), -1.0, 1.0)) / PI;
-    float pole = 0.5 / float(textureSize(u_light_profiles, 0).y);
+    float pole = 0.5 / float(textureSize(u_light_shapes, 0).y);
     down = clamp(down, pole, 1.0 - pole);
-    return textureLod(u_light_profiles, vec3(turned, down, float(light.profile)), 0.0).r;
+    return textureLod(u_light_shapes, vec3(turned, down, float(light.profile)), 0.0).r;
 }
 
 // What a light's mask lets through to a point, which lies `offset` from the light: the mean over
@@ -46,11 +46,11 @@ float profile_falloff(Light light, vec3 to_light) {
 vec3 mask_share(Light light, vec3 offset, float footprint_m) {
     vec3 down = cross(light.direction_ws, light.profile_axis_ws);
     vec2 across = vec2(dot(offset, light.profile_axis_ws), dot(offset, down)) * light.mask_scale;
-    float texels = float(textureSize(u_light_profiles, 0).x);
+    float texels = float(textureSize(u_light_shapes, 0).x);
     if (light.kind == LIGHT_DIRECTIONAL) {
         float lod = log2(max(footprint_m * light.mask_scale * texels, 1.0));
         vec2 uv = across + 0.5 - light.mask_offset;
-        return textureLod(u_light_profiles, vec3(uv, float(light.mask)), lod).rgb;
+        return textureLod(u_light_shapes, vec3(uv, float(light.mask)), lod).rgb;
     }
     float along = dot(offset, light.direction_ws);
     if (along <= 0.0) return vec3(0.0);
@@ -59,7 +59,7 @@ vec3 mask_share(Light light, vec3 offset, float footprint_m) {
     if (any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.0);
     float rim = light.mask_offset == vec2(0.0) ? 0.5 * exp2(lod) / texels : 0.0;  // what repeats is not seen
     uv = clamp(uv, min(rim, 0.5), 1.0 - min(rim, 0.5)) - light.mask_offset;
-    return textureLod(u_light_profiles, vec3(uv, float(light.mask)), lod).rgb;
+    return textureLod(u_light_shapes, vec3(uv, float(light.mask)), lod).rgb;
 }
 
 // What a light sends to a place that is `footprint_m` wide.

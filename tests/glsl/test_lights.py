@@ -9,7 +9,7 @@ from elemental.core.images import resized
 from elemental.core.layout import Block
 from elemental.gpu.device import Device
 from elemental.passes.light_pack import pack_lights
-from elemental.passes.light_profiles import MASK_SIZE, LightProfiles, profiles_of
+from elemental.passes.light_shapes import MASK_SIZE, LightShapes, shapes_of
 from elemental.scene.ies import LightProfile
 from elemental.scene.light_masks import drifted
 from elemental.scene.lights import Light, LightMask
@@ -32,8 +32,8 @@ def light(kind: str, **fields: object) -> Light:
 def irradiance(device: Device, source: Light, points: np.ndarray) -> np.ndarray:
     packed: Block = pack_lights([source], [-1], [(0, 0)])
     lights = device.buffer("lights", packed)
-    profiles = LightProfiles(device)
-    profiles.update(profiles_of([source]))
+    profiles = LightShapes(device)
+    profiles.update(shapes_of([source]))
     body, reads = (
         "sample_light(lights[0], p, 0.0).irradiance",
         {"Lights": lights, **profiles.reads()},
@@ -128,8 +128,8 @@ def test_a_wide_place_sees_the_masks_mean(device: Device) -> None:
     mask = picture(3)
     source = light("directional", mask=mask, mask_size=0.01)
     packed = device.buffer("lights", pack_lights([source], [-1], [(0, 0)]))
-    profiles = LightProfiles(device)
-    profiles.update(profiles_of([source]))
+    profiles = LightShapes(device)
+    profiles.update(shapes_of([source]))
     points = np.random.default_rng(5).normal(size=(32, 3))
     got = run_glsl(
         device, ["lib/lights.glsl"],

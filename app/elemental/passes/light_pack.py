@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from elemental.core.layout import layouts, pack_array
-from elemental.passes.light_profiles import profiles_of
+from elemental.passes.light_shapes import shapes_of
 from elemental.passes.scene_pack import Array
 from elemental.scene.model import Light
 
@@ -75,7 +75,7 @@ def pack_lights(
 
     first_view: -1 without a shadow; cascades: (first view, count); ranges, m: instead of the
     lights' own; penumbras: whether a light's size softens its shadows. Profiles are numbered as
-    in `profiles_of`.
+    in `shapes_of`.
     """
     if not lights:
         zero, down = np.zeros(3, np.float32), np.array([0.0, -1.0, 0.0], np.float32)
@@ -83,7 +83,7 @@ def pack_lights(
         lights, first_view, cascades, ranges = [dark], [-1], [(0, 0)], None
     if ranges is None:
         ranges = [light.range for light in lights]
-    layers = {id(profile): layer for layer, profile in enumerate(profiles_of(lights))}
+    layers = {id(shape): layer for layer, shape in enumerate(shapes_of(lights))}
     cosines = np.cos([(light.inner_angle, light.outer_angle) for light in lights])
     spot_scale = 1.0 / np.maximum(cosines[:, 0] - cosines[:, 1], CONE_MARGIN)
     return pack_array(

@@ -12,7 +12,7 @@ from elemental.core.files import read_text
 from elemental.core.paths import content_root, glsl_root
 from elemental.gpu.shaders import COMMENT, ShaderError, SnippetText
 from elemental.scene.definitions import (
-    SHARED,
+    COMMON_PARAMETERS,
     MaterialDefinition,
     read_definition,
 )
@@ -106,7 +106,7 @@ def prelude(definition: MaterialDefinition) -> str:
 
 
 def _fetch(parameter: Parameter, place: int) -> str:
-    if parameter.name in SHARED:
+    if parameter.name in COMMON_PARAMETERS:
         return f"materials[material].{parameter.name}"
     first = place % 4
     lanes = "xyzw"[first : first + parameter.lanes]

@@ -25,7 +25,7 @@ from elemental.gpu.resources import Buffer, Texture
 from elemental.gpu.shaders import Raster
 from elemental.gpu.state import RasterState
 from elemental.passes.culling import views_with_any
-from elemental.passes.light_profiles import LightProfiles
+from elemental.passes.light_shapes import LightShapes
 from elemental.passes.material_pack import BASE_COLOR_SLOT
 from elemental.passes.material_table import material_shader
 from elemental.passes.scene_gpu import GpuScene
@@ -53,7 +53,7 @@ class ShadowMaps:
     def __init__(self, device: Device, settings: ShadowSettings) -> None:
         self._device = device
         self.planner = ShadowPlanner(settings)
-        self._profiles = LightProfiles(device)
+        self._shapes = LightShapes(device)
         self.light_key: Hashable = None
         self.lamp_key: Hashable = None
         self.counts: dict[str, int] = {}
@@ -76,7 +76,7 @@ class ShadowMaps:
 
     def light_reads(self) -> dict[str, Ref]:
         """What a shader reads that includes lib/lights.glsl, too."""
-        return {**self.reads(), **self._profiles.reads()}
+        return {**self.reads(), **self._shapes.reads()}
 
     def depth_reads(self, contact: bool = False) -> dict[str, Ref]:
         """What a shader reads that asks lib/shadow.glsl of what the camera sees.
@@ -89,7 +89,7 @@ class ShadowMaps:
 
     def view_reads(self, contact: bool = False) -> dict[str, Ref]:
         """What a shader reads, too, that shades it by lib/lights.glsl."""
-        return {**self.depth_reads(contact), **self._profiles.reads()}
+        return {**self.depth_reads(contact), **self._shapes.reads()}
 
     def params(self) -> dict[str, Block]:
         """The uniform blocks of lib/shadow.glsl: none."""
@@ -106,7 +106,7 @@ class ShadowMaps:
             if maps is not None:
                 maps.release()
         self._maps = self._still = None
-        self._profiles.release()
+        self._shapes.release()
         for buffer in self._buffers.values():
             buffer.release()
         for held in (self._buffers, self._uploaded, self._drawn, self._still_drawn):
@@ -114,7 +114,7 @@ class ShadowMaps:
 
     def place(self, plan: ShadowPlan, scene: GpuScene) -> list[int]:
         """Upload a plan. Returns the numbers of the views whose map has to be drawn anew."""
-        self._profiles.update(plan.profiles)
+        self._shapes.update(plan.shapes)
         self._allocate(plan.layers, bool(scene.dynamic.any() and not scene.dynamic.all()))
         self._upload("Lights", plan.lights)
         self._upload("LightBounds", plan.bounds)
@@ -124,8 +124,8 @@ class ShadowMaps:
         self.counts = {"shadow_maps": len(plan.views), "lights_without_shadow": plan.unshadowed}
         light_fields = [name for name in plan.lights.dtype.names or () if "cascade" not in name]
         fixed = plan.views[: plan.fixed][["clip_from_world", "texel"]]
-        profiles = self._profiles.revision
-        self.lamp_key = (plan.lights[light_fields].tobytes(), fixed.tobytes(), profiles)
+        shapes = self._shapes.revision
+        self.lamp_key = (plan.lights[light_fields].tobytes(), fixed.tobytes(), shapes)
         self.light_key = (scene.version, self.lamp_key)
         self._forget_changed(plan, scene)
         for drawn in (self._drawn, self._still_drawn):

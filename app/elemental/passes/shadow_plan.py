@@ -12,7 +12,7 @@ from elemental.core.layout import layouts, pack_array
 from elemental.passes import shadow_fit
 from elemental.passes.camera_view import clip_range
 from elemental.passes.light_pack import light_bounds, pack_lights, reach
-from elemental.passes.light_profiles import Shape, profiles_of
+from elemental.passes.light_shapes import Shape, shapes_of
 from elemental.passes.scene_pack import Array
 from elemental.passes.shadow_budget import FACES, ShadowBudget, Shares
 from elemental.passes.shadow_fit import Bounds, FittedView, ViewFrustum
@@ -44,8 +44,8 @@ class ShadowPlan:
     """lights (L,) of the struct Light, never empty; views (V,) of the struct ShadowView, the
     cascades behind the `fixed` ones, which do not depend on the camera; names and tiles by view;
     `layers` that no camera exceeds; unshadowed: lights that the budget leaves without a map.
-    bounds (L, 4) of `light_bounds`; culled: whether they are worth it. profiles: of
-    `profiles_of`."""
+    bounds (L, 4) of `light_bounds`; culled: whether they are worth it. shapes: of
+    `shapes_of`."""
 
     lights: Array
     bounds: Array
@@ -56,7 +56,7 @@ class ShadowPlan:
     fixed: int
     layers: int
     unshadowed: int
-    profiles: list[Shape]
+    shapes: list[Shape]
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ class ShadowPlanner:
     _pool: TilePool = field(init=False)
     _lights: list[Light] = field(default_factory=list)
     _reaches: list[float] = field(default_factory=list)
-    _profiles: list[Shape] = field(default_factory=list)
+    _shapes: list[Shape] = field(default_factory=list)
     _spheres: Array = field(default_factory=lambda: light_bounds([], []))
     _fitted: dict[int, tuple[Hashable, list[FittedView]]] = field(default_factory=dict)
     _fixed: FixedViews | None = None
@@ -130,7 +130,7 @@ class ShadowPlanner:
             fixed=len(fixed.names),
             layers=self._pool.layers,
             unshadowed=shares.unshadowed,
-            profiles=self._profiles,
+            shapes=self._shapes,
         )
 
     @property
@@ -147,7 +147,7 @@ class ShadowPlanner:
         self._lights = list(lights)
         self._reaches = [reach(light, self.settings.cutoff) for light in lights]
         self._spheres = light_bounds(lights, self._reaches)
-        self._profiles = profiles_of(lights)
+        self._shapes = shapes_of(lights)
         self._fixed = self._packed = None
 
     def _fixed_views(self, lights: Sequence[Light], shares: Shares, bounds: Bounds) -> FixedViews:

@@ -13,7 +13,7 @@ from urllib.parse import unquote
 
 from elemental.remote.changes import RefusedError, description
 from elemental.remote.mailbox import Mailbox
-from elemental.remote.pace import Pace, Paces
+from elemental.remote.rate_limit import HostLimits, RateLimit
 
 MAX_HEAD = 8192
 """Bytes of a request line with its headers."""
@@ -40,7 +40,7 @@ class Request:
 
 
 @dataclass(eq=False)
-class Guest:
+class Peer:
     """Who is at the other end of a connection."""
 
     host: str
@@ -49,14 +49,14 @@ class Guest:
 
 
 @dataclass(frozen=True)
-class Door:
+class Access:
     """What all connections share. Those who know the token never wait for those who don't."""
 
     mailbox: Mailbox
     token: str
-    known: Paces
+    known: HostLimits
     """Of those who know the token, by host: faster ones wait."""
-    strangers: Pace
+    unknown: RateLimit
     """Answers to all others together; without a permit they are cut without one."""
 
 
@@ -64,10 +64,10 @@ class Connection:
     """Serves requests of one client until it goes, errs, is too slow or lacks the token."""
 
     def __init__(
-        self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, door: Door, guest: Guest
+        self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, access: Access, peer: Peer
     ) -> None:
         self._reader, self._writer = reader, writer
-        self._door, self._guest = door, guest
+        self._access, self._peer = access, peer
 
     async def serve(self) -> None:
         """Answer one request after the other; ends by itself."""
@@ -87,10 +87,10 @@ class Connection:
                 request = await self._read()
             self._check_token(request)
             goes_on = request.minor > 0 and request.headers.get("connection", "") != "close"
-            await self._door.known.of(self._guest.host).wait()
+            await self._access.known.of(self._peer.host).wait()
             status, answer = HTTPStatus.OK, self._answer(request)
         except RefusedError as error:
-            if not (self._guest.is_known or self._door.strangers.take()):
+            if not (self._peer.is_known or self._access.unknown.take()):
                 return False
             status, answer = HTTPStatus(error.status), {"error": str(error)}
         async with asyncio.timeout(REQUEST_S):
@@ -126,8 +126,8 @@ class Connection:
 
     def _check_token(self, request: Request) -> None:
         given = request.headers.get("authorization", "").encode("latin-1")
-        self._guest.is_known = hmac.compare_digest(given, f"Bearer {self._door.token}".encode())
-        if not self._guest.is_known:
+        self._peer.is_known = hmac.compare_digest(given, f"Bearer {self._access.token}".encode())
+        if not self._peer.is_known:
             raise RefusedError(401, "the token is missing or wrong")
 
     def _answer(self, request: Request) -> dict[str, Any]:
@@ -139,9 +139,9 @@ class Connection:
         if request.method != ("PUT" if len(parts) == 2 else "GET"):
             raise RefusedError(405, "GET /volumes, GET /volumes/NAME, PUT /volumes/NAME/PROPERTY")
         if len(parts) == 2:
-            change = self._door.mailbox.put(parts[0], parts[1], parse_value(request.body))
+            change = self._access.mailbox.put(parts[0], parts[1], parse_value(request.body))
             return {"volume": change.volume, "property": change.property, "value": change.value}
-        volumes = [description(volume) for volume in self._door.mailbox.volumes()]
+        volumes = [description(volume) for volume in self._access.mailbox.volumes()]
         if not parts:
             return {"volumes": volumes}
         for volume in volumes:

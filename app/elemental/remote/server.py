@@ -14,9 +14,9 @@ from typing import Any
 
 from elemental.core.errors import InputError
 from elemental.remote import osc
-from elemental.remote.http import MAX_HEAD, Connection, Door, Guest
+from elemental.remote.http import MAX_HEAD, Access, Connection, Peer
 from elemental.remote.mailbox import Mailbox
-from elemental.remote.pace import Pace, Paces
+from elemental.remote.rate_limit import HostLimits, RateLimit
 from elemental.scene.model import Scene
 from elemental.settings import Settings
 
@@ -29,7 +29,7 @@ BACKLOG = 128
 ARRIVALS_PER_S = 1000.0
 """Connections accepted: bounds what those without the token cost the frame."""
 MAX_CLIENTS = 32
-"""Hosts with the token whose pace is kept; each has its own."""
+"""Hosts with the token whose limit is kept; each has its own."""
 REQUESTS_PER_S = 200.0
 """HTTP requests of a host with the token: three faders at 60 Hz. Faster clients wait."""
 BURST = 50.0
@@ -142,11 +142,11 @@ class Remote:
 
     async def _serve(self) -> None:
         self._tasks: set[asyncio.Task[None]] = set()
-        self._guests: dict[asyncio.Task[None], Guest] = {}
+        self._peers: dict[asyncio.Task[None], Peer] = {}
         self._left = asyncio.Event()
-        known = Paces(REQUESTS_PER_S, BURST, MAX_CLIENTS)
-        strangers = Pace(REFUSALS_PER_S, REFUSALS_PER_S)
-        self._door = Door(self.mailbox, self.token, known, strangers)
+        known = HostLimits(REQUESTS_PER_S, BURST, MAX_CLIENTS)
+        unknown = RateLimit(REFUSALS_PER_S, REFUSALS_PER_S)
+        self._access = Access(self.mailbox, self.token, known, unknown)
         if self._http is not None:
             self._start(self._accept(self._http))
         if self._osc is not None:
@@ -168,7 +168,7 @@ class Remote:
             self.faults += 1
 
     async def _accept(self, listener: socket.socket) -> None:
-        arrivals = Pace(ARRIVALS_PER_S, BURST)
+        arrivals = RateLimit(ARRIVALS_PER_S, BURST)
         while True:
             await arrivals.wait()
             try:
@@ -181,15 +181,15 @@ class Remote:
             except asyncio.CancelledError:
                 client.close()
                 raise
-            guest = Guest(address[0])
-            task = self._start(self._converse(client, guest))
-            self._guests[task] = guest
+            peer = Peer(address[0])
+            task = self._start(self._converse(client, peer))
+            self._peers[task] = peer
             task.add_done_callback(self._gone)
             task.add_done_callback(partial(_close, client))
 
     async def _make_room(self) -> None:
         """Wait until one more may be served, for whom a stranger is cut."""
-        while len(self._guests) >= MAX_CONNECTIONS:
+        while len(self._peers) >= MAX_CONNECTIONS:
             stranger = self._stranger()
             self._left.clear()
             if stranger is not None:
@@ -198,15 +198,15 @@ class Remote:
 
     def _stranger(self) -> asyncio.Task[None] | None:
         """Who makes room: the oldest without the token, of the host that has most of them."""
-        unknown = {task: guest.host for task, guest in self._guests.items() if not guest.is_known}
+        unknown = {task: peer.host for task, peer in self._peers.items() if not peer.is_known}
         crowds = Counter(unknown.values())
         return max(unknown, key=lambda task: crowds[unknown[task]], default=None)
 
     def _gone(self, task: asyncio.Task[None]) -> None:
-        self._guests.pop(task, None)
+        self._peers.pop(task, None)
         self._left.set()
 
-    async def _converse(self, client: socket.socket, guest: Guest) -> None:
+    async def _converse(self, client: socket.socket, peer: Peer) -> None:
         reader = asyncio.StreamReader(limit=MAX_HEAD, loop=self._loop)
         protocol = asyncio.StreamReaderProtocol(reader, loop=self._loop)
         try:
@@ -214,11 +214,11 @@ class Remote:
         except OSError:
             return
         writer = asyncio.StreamWriter(transport, protocol, reader, self._loop)
-        await Connection(reader, writer, self._door, guest).serve()
+        await Connection(reader, writer, self._access, peer).serve()
 
     async def _receive(self, listener: socket.socket) -> None:
-        looks = Pace(DRAINS_PER_S, 1.0)
-        known = Paces(DATAGRAMS_PER_S, DATAGRAM_BURST, MAX_CLIENTS)
+        looks = RateLimit(DRAINS_PER_S, 1.0)
+        known = HostLimits(DATAGRAMS_PER_S, DATAGRAM_BURST, MAX_CLIENTS)
         token = self.token.encode()
         while True:
             await looks.wait()

@@ -34,7 +34,7 @@ DISPLACEMENT_MAX_M = 1e6
 LIGHTING_MODELS = ("subsurface", "cloth")
 """Those that a material has to ask for, by the name LIGHTING_* in its code."""
 
-SHARED: dict[str, ParameterKind] = {
+COMMON_PARAMETERS: dict[str, ParameterKind] = {
     "base_color": "rgba",
     "metallic": "float",
     "roughness": "float",
@@ -104,7 +104,7 @@ class MaterialDefinition:
     @property
     def own(self) -> tuple[Parameter, ...]:
         """The parameters that glTF materials do not have."""
-        return tuple(p for p in self.parameters if p.name not in SHARED)
+        return tuple(p for p in self.parameters if p.name not in COMMON_PARAMETERS)
 
     @property
     def textures(self) -> tuple[Parameter, ...]:
@@ -224,7 +224,7 @@ def _heading(text: str, path: Path) -> str:
 def _check(definition: MaterialDefinition) -> None:
     path = definition.file
     for parameter in definition.parameters:
-        kind = SHARED.get(parameter.name)
+        kind = COMMON_PARAMETERS.get(parameter.name)
         if kind is not None and parameter.kind != kind:
             raise InputError(path, f"parameters.{parameter.name}.type", f"should be {kind}")
     for name in definition.emits:

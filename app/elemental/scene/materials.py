@@ -11,7 +11,7 @@ import numpy as np
 
 from elemental.core.errors import InputError
 from elemental.scene.arrays import ByteArray, FloatArray
-from elemental.scene.definitions import SHARED, STANDARD, MaterialDefinition, builtin
+from elemental.scene.definitions import COMMON_PARAMETERS, STANDARD, MaterialDefinition, builtin
 from elemental.scene.parameters import ParameterValue
 
 Wrap: TypeAlias = Literal["repeat", "clamp", "mirror"]
@@ -114,7 +114,7 @@ class Material:
 
     def value(self, name: str) -> ParameterValue:
         """A parameter that is no texture, as it is now."""
-        if name in SHARED:
+        if name in COMMON_PARAMETERS:
             held = getattr(self, name)
             if isinstance(held, np.ndarray):
                 return tuple(float(part) for part in held)
@@ -141,7 +141,7 @@ class Material:
         Raises InputError(definition, name, reason) for a name or a value that can't be.
         """
         checked = self.definition.check_value(name, value)
-        if name not in SHARED:
+        if name not in COMMON_PARAMETERS:
             return replace(self, values={**self.values, name: checked})
         held = np.array(checked, np.float32) if isinstance(checked, tuple) else checked
         changed: dict[str, object] = {name: held}
@@ -152,7 +152,7 @@ class Material:
     def texture(self, name: str) -> TextureSlot | None:
         """The image of one of its texture parameters; None where that is plain."""
         slot: TextureSlot | None = (
-            getattr(self, name) if name in SHARED else self.textures.get(name)
+            getattr(self, name) if name in COMMON_PARAMETERS else self.textures.get(name)
         )
         return slot
 
@@ -173,7 +173,7 @@ class Material:
 
     def with_slot(self, name: str, slot: TextureSlot | None) -> Material:
         """This material with another slot for one of its texture parameters."""
-        if name not in SHARED:
+        if name not in COMMON_PARAMETERS:
             others = {k: v for k, v in self.textures.items() if k != name}
             return replace(self, textures=others if slot is None else {**others, name: slot})
         changed: dict[str, object] = {name: slot}

@@ -14,7 +14,7 @@ import numpy as np
 from elemental.scene import toml_edit
 from elemental.scene.decals import Decal
 from elemental.scene.defaults import default_sun
-from elemental.scene.definitions import SHARED, MaterialDefinition, materials_folder
+from elemental.scene.definitions import COMMON_PARAMETERS, MaterialDefinition, materials_folder
 from elemental.scene.lights import Light
 from elemental.scene.materials import Material, Texture
 from elemental.scene.save_names import relative
@@ -156,7 +156,7 @@ def _image_changes(
             file = textures[slot.texture].file
             changes[name] = None if file is None else relative(file, folder)
         elif slot is None and was is not None:
-            changes[name] = str(parameter.default if name in SHARED else new.value(name))
+            changes[name] = str(parameter.default if name in COMMON_PARAMETERS else new.value(name))
     return changes
 
 
@@ -164,10 +164,12 @@ def _material_changes(old: Material, new: Material) -> dict[str, Any]:
     changes: dict[str, Any] = {}
     for parameter in new.definition.parameters:
         name = parameter.name
-        if parameter.kind == "texture" and (name in SHARED or new.texture(name) is not None):
+        if parameter.kind == "texture" and (
+            name in COMMON_PARAMETERS or new.texture(name) is not None
+        ):
             continue
         value = new.value(name)
-        is_known = name in SHARED or old.definition.parameter(name) is not None
+        is_known = name in COMMON_PARAMETERS or old.definition.parameter(name) is not None
         if value != (old.value(name) if is_known else parameter.default):
             changes[name] = [_short(p) for p in value] if isinstance(value, tuple) else value
     return changes

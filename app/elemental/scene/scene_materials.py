@@ -9,7 +9,7 @@ from pathlib import Path
 
 from elemental.core.errors import InputError, named_by
 from elemental.core.images import check_side, read_png_jpeg_webp
-from elemental.scene.definitions import SHARED, MaterialDefinition, find_definition
+from elemental.scene.definitions import COMMON_PARAMETERS, MaterialDefinition, find_definition
 from elemental.scene.materials import Material, Texture
 from elemental.scene.model import Scene
 from elemental.scene.parameters import PLAIN_TEXTURES
@@ -75,7 +75,7 @@ def valued(
             raise InputError(scene.path, f"{field}.{name}", error.reason) from None
         if checked == parameter.default and checked in PLAIN_TEXTURES:
             material = material.without_image(name)
-        elif checked in PLAIN_TEXTURES and name not in SHARED:
+        elif checked in PLAIN_TEXTURES and name not in COMMON_PARAMETERS:
             material = material.without_image(name).with_value(name, checked)
         else:
             number = _image(scene, str(checked), f"{field}.{name}", images)

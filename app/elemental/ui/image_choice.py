@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from elemental.core.paths import named_file
-from elemental.scene.definitions import SHARED
+from elemental.scene.definitions import COMMON_PARAMETERS
 from elemental.scene.light_masks import masked, read_light_mask
 from elemental.scene.lights import LightMask
 from elemental.scene.materials import Texture
@@ -51,7 +51,7 @@ def _choose_texture(desk: Desk, place: Place, text: str) -> None:
     if text in ("", plain):
         document.set_material(index, material.without_image(name))
         return
-    if text in PLAIN_TEXTURES and name not in SHARED:
+    if text in PLAIN_TEXTURES and name not in COMMON_PARAMETERS:
         document.set_material(index, material.without_image(name).with_value(name, text))
         return
 

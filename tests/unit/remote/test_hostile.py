@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from elemental.core.errors import InputError
 from elemental.remote import http
-from elemental.remote.pace import Paces
+from elemental.remote.rate_limit import HostLimits
 from elemental.remote.server import LOOPBACK, MAX_CONNECTIONS, Remote
 from elemental.scene.volumes import Volume
 from unit.remote.client import TIMEOUT_S, Rig
@@ -176,7 +176,7 @@ def test_those_who_arrive_at_once_are_no_more_than_the_limit(rig: Rig) -> None:
             counts.append(len(self))
 
     def stand_still() -> None:
-        remote._guests = Watched(remote._guests)
+        remote._peers = Watched(remote._peers)
         stands.set()
         goes_on.wait(TIMEOUT_S)
 
@@ -205,13 +205,13 @@ def test_who_knows_the_token_is_not_cut_for_newer_ones(rig: Rig) -> None:
         other.close()
 
 
-def test_each_client_has_its_own_pace_and_few_are_kept() -> None:
-    paces = Paces(rate=1.0, burst=2.0, most=8)
-    assert [paces.of("a").take() for _ in range(4)] == [True, True, False, False]
-    assert paces.of("b").take()
+def test_each_client_has_its_own_limit_and_few_are_kept() -> None:
+    limits = HostLimits(rate=1.0, burst=2.0, most=8)
+    assert [limits.of("a").take() for _ in range(4)] == [True, True, False, False]
+    assert limits.of("b").take()
     for number in range(100):
-        assert paces.of(f"c{number}").take()
-    assert len(paces) == 8
+        assert limits.of(f"c{number}").take()
+    assert len(limits) == 8
 
 
 def test_only_loopback_is_listened_on(rig: Rig) -> None:

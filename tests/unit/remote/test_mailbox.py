@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from elemental.remote.mailbox import Mailbox
-from elemental.remote.pace import Pace
+from elemental.remote.rate_limit import RateLimit
 from elemental.scene.volumes import Volume
 from elemental.settings import Settings
 
@@ -69,13 +69,13 @@ def test_a_frame_without_changes_gets_its_own_volumes_back() -> None:
 
 
 @given(st.lists(st.floats(0.0, 0.2), min_size=1, max_size=100))
-def test_a_pace_never_lets_more_through_than_its_rate(gaps: list[float]) -> None:
+def test_a_limit_never_lets_more_through_than_its_rate(gaps: list[float]) -> None:
     rate, burst, now = 10.0, 3.0, 0.0
-    pace = Pace(rate, burst, lambda: now)
+    limit = RateLimit(rate, burst, lambda: now)
     passed = []
     for gap in gaps:
         now += gap
-        passed.append(now + pace.delay())
+        passed.append(now + limit.delay())
     assert passed == sorted(passed)
     for first, began in enumerate(passed):
         for last in range(first, len(passed)):

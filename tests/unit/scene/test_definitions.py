@@ -10,7 +10,7 @@ from elemental.core.errors import InputError
 from elemental.passes.material_pack import pack_parameters
 from elemental.passes.material_snippets import prelude
 from elemental.scene.definitions import (
-    SHARED,
+    COMMON_PARAMETERS,
     STANDARD,
     builtin,
     definition_names,
@@ -94,14 +94,14 @@ def test_those_that_come_along_can_be_drawn_by_a_panel(name: str) -> None:
 
 
 def test_the_standard_material_has_all_that_gltf_has() -> None:
-    assert [p.name for p in builtin(STANDARD).parameters] == list(SHARED)
+    assert [p.name for p in builtin(STANDARD).parameters] == list(COMMON_PARAMETERS)
 
 
 def test_a_definition_may_take_gltf_s_parameters_along(tmp_path: Path) -> None:
     text = HEADING.replace("animated = true", "standard = true")
     names = [p.name for p in read_definition(write(tmp_path, text)).parameters]
     assert len(names) == len(set(names))
-    assert set(SHARED) <= set(names)
+    assert set(COMMON_PARAMETERS) <= set(names)
 
 
 def test_values_that_a_new_definition_does_not_know_are_dropped(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from collections import OrderedDict
 from collections.abc import Callable
 
 
-class Pace:
+class RateLimit:
     """A bucket of ``burst`` permits that refills at ``rate`` a second."""
 
     def __init__(
@@ -43,20 +43,20 @@ class Pace:
         self._then = now
 
 
-class Paces:
-    """A Pace for each of the ``most`` clients that were heard last."""
+class HostLimits:
+    """A RateLimit for each of the ``most`` clients that were heard last."""
 
     def __init__(self, rate: float, burst: float, most: int) -> None:
         self._rate, self._burst, self._most = rate, burst, most
-        self._paces: OrderedDict[str, Pace] = OrderedDict()
+        self._limits: OrderedDict[str, RateLimit] = OrderedDict()
 
-    def of(self, client: str) -> Pace:
+    def of(self, client: str) -> RateLimit:
         """Whose is new begins with all of its permits."""
-        pace = self._paces.pop(client, None) or Pace(self._rate, self._burst)
-        self._paces[client] = pace
-        if len(self._paces) > self._most:
-            self._paces.popitem(last=False)
-        return pace
+        limit = self._limits.pop(client, None) or RateLimit(self._rate, self._burst)
+        self._limits[client] = limit
+        if len(self._limits) > self._most:
+            self._limits.popitem(last=False)
+        return limit
 
     def __len__(self) -> int:
-        return len(self._paces)
+        return len(self._limits)

@@ -24,14 +24,14 @@ MASK_SIZE = (256, 256)
 Shape: TypeAlias = LightProfile | LightMask
 
 
-def profiles_of(lights: Sequence[Light]) -> list[Shape]:
+def shapes_of(lights: Sequence[Light]) -> list[Shape]:
     """Each profile and each mask that any of the lights has, once."""
     shapes = [shape for light in lights for shape in (light.profile, light.mask)]
     return list({id(shape): shape for shape in shapes if shape is not None}.values())
 
 
-class LightProfiles:
-    """The texture `u_light_profiles` of lib/lights.glsl; `revision` counts its contents."""
+class LightShapes:
+    """The texture `u_light_shapes` of lib/lights.glsl; `revision` counts its contents."""
 
     def __init__(self, device: Device) -> None:
         self._device = device
@@ -54,7 +54,7 @@ class LightProfiles:
         for layer, shape in enumerate(shapes):
             texels[layer] = _layer(shape, size, texels.shape[-1])
         self._texture = self._device.texture(
-            "lights.profiles",
+            "lights.shapes",
             size,
             RGBA16F if masks else R16F,
             mips=mip_count(size) if masks else 1,
@@ -69,7 +69,7 @@ class LightProfiles:
         sampled = Sampled(
             self._texture, filter="trilinear" if mips > 1 else "linear", wrap="repeat"
         )
-        return {"u_light_profiles": sampled}
+        return {"u_light_shapes": sampled}
 
     def release(self) -> None:
         """Free the texture."""
