@@ -45,7 +45,11 @@ def load_scene(
     else:
         check_file(path)
         raise InputError(path, "", "expected a .gltf, .glb or .toml file")
-    _check_animation(scene, animation or str(scene.settings.get("scene.animation", "")))
+    if animation is not None:
+        _check_animation(scene, animation, "scene.animation")
+    else:
+        own = str(scene.settings.get("scene.animation", ""))
+        _check_animation(scene, own, "settings.scene.animation")
     settle(scene)
     _drop_unused_meshes(scene)
     _check_drawable(scene)
@@ -74,11 +78,11 @@ def _find(name_or_path: str | Path) -> Path:
     raise InputError(str(name_or_path), "", f"neither a file nor one of the scenes: {known}")
 
 
-def _check_animation(scene: Scene, wanted: str) -> None:
+def _check_animation(scene: Scene, wanted: str, field: str) -> None:
     if wanted not in ("", EVERY_ANIMATION, NO_ANIMATION, *scene.animations):
         known = ", ".join(scene.animations) or "none"
         reason = f"no animation is named {wanted!r}; known: {known}"
-        raise InputError(scene.path, "scene.animation", reason)
+        raise InputError(scene.path, field, reason)
 
 
 def _drop_unused_meshes(scene: Scene) -> None:

@@ -172,7 +172,7 @@ MOTION = '[[motions]]\nmodel = "ball"\nspin = { period = 1.0 }\n'
         ('[[models]]\nfile = "still.glb"\nname = "ball"\n' + MOTION,
          "models[2].name: another model is named 'ball'"),
         ('[settings]\nscene.animation = "walk"\n',
-         "scene.animation: no animation is named 'walk'; known: slide"),
+         "settings.scene.animation: no animation is named 'walk'; known: slide"),
     ],
 )  # fmt: skip
 def test_mistakes(toml: str, reason: str, tmp_path: Path) -> None:
