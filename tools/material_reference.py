@@ -38,9 +38,9 @@ direction = [-0.5, -0.8, -0.6]
 intensity = 2.5
 [[cameras]]
 name = "front"
-eye = [0.2, 0.42, 1.25]
-target = [0.0, 0.33, 0.0]
-fov_y_deg = 32.0
+eye = [0.3, 0.45, 1.35]
+target = [0.0, 0.345, 0.0]
+fov_y_deg = 34.0
 near = 0.05
 [settings]
 "gi.bounces" = 2
@@ -90,7 +90,7 @@ def stacked(pictures: Sequence[Image.Image]) -> Image.Image:
 def main() -> None:
     """Draw and write it."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--spp", type=int, default=64, help="samples a pixel (64)")
+    parser.add_argument("--spp", type=int, default=256, help="samples a pixel (256)")
     parser.add_argument("--helmet", type=Path, metavar="MODEL.gltf")
     parser.add_argument("--sky", type=Path, metavar="FILE.hdr")
     words = parser.parse_args()
