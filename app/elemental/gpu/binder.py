@@ -13,7 +13,10 @@ from elemental.gpu.refs import SamplerKey, sampler_parameters
 Binding = tuple[int, Callable[..., None], tuple[Any, ...]]
 """(place, how to bind, with what): nothing is to be done where the place has the same already."""
 
-_TEXTURES, _SAMPLERS, _IMAGES, _STORAGE, _UNIFORM = range(0, 5 * 256, 256)
+_UNITS = 256
+"""Room for each kind of unit: more than a program can use."""
+_PLACES = 5 * _UNITS
+_TEXTURES, _SAMPLERS, _IMAGES, _STORAGE, _UNIFORM = range(0, _PLACES, _UNITS)
 """First places of texture units, their samplers, image units and block bindings."""
 _BLOCKS = {c.SHADER_STORAGE_BUFFER: _STORAGE, c.UNIFORM_BUFFER: _UNIFORM}
 
@@ -25,12 +28,12 @@ class Binder:
         self.gl = gl
         self._max_anisotropy = max_anisotropy
         self._samplers: dict[SamplerKey, int] = {}
-        self._held: dict[int, tuple[Any, ...]] = {}
+        self._held: list[tuple[Any, ...] | None] = [None] * _PLACES
         self._active_unit = -1
 
     def forget(self) -> None:
         """Assume nothing about the context: other code may have bound things."""
-        self._held.clear()
+        self._held = [None] * _PLACES
         self._active_unit = -1
 
     def prepare(self, looks: Sequence[tuple[Look, Any]]) -> list[Binding]:
@@ -59,14 +62,14 @@ class Binder:
         """Bind what is not bound already."""
         held = self._held
         for place, bind, arguments in bindings:
-            if held.get(place) != arguments:
+            if held[place] != arguments:
                 held[place] = arguments
                 bind(*arguments)
 
     def bind_params(self, unit: int, glo: int, offset: int, size: int) -> None:
         """Bind a range of the parameter ring to a uniform block."""
         place, arguments = _UNIFORM + unit, (c.UNIFORM_BUFFER, unit, glo, offset, size)
-        if self._held.get(place) != arguments:
+        if self._held[place] != arguments:
             self._held[place] = arguments
             self.gl.glBindBufferRange(*arguments)
 

@@ -49,6 +49,8 @@ class Device:
         self.gl = c.GL(loader, ctx.version_code)
         check_limits(self.gl)
         self.debug = debug
+        self.names_passes = debug or _DEBUG_TOOL in ctx.extensions
+        """Whether each pass is a debug group: where a debugger looks on."""
         self.log = Messages(self.gl)
         self.memory_budget: int | None = None
         """Bytes that may be allocated; None: as many as the driver gives."""
@@ -317,5 +319,7 @@ class Device:
         self.ctx.release()
 
 
+_DEBUG_TOOL = "GL_EXT_debug_tool"
+"""Extension that RenderDoc and apitrace put before the driver's."""
 _CHECKED_BYTES = 1 << 20
 """Smaller resources are checked for lack of memory on debug devices only."""

@@ -45,7 +45,7 @@ class Encoder:
 
         A name that the program does not use is ignored if the source declares it.
         """
-        program = self._node.program
+        program = self._node.uses.program
         slot = program.slots.get(name)
         if slot is None:
             raise GraphError(f"{program.shader!r}: no {name}")
@@ -60,7 +60,7 @@ class Encoder:
         self._executor.binder.bind(bindings)
 
     def _looked_up(self, slot: Slot, ref: Ref) -> Drawn:
-        bound = looks(slot, ref, self._node.program)
+        bound = looks(slot, ref, self._node.uses.program)
         lasting = not any(isinstance(resource, AnyHandle) for _, resource in bound)
         physical = [(look, r.physical if isinstance(r, AnyHandle) else r) for look, r in bound]
         bindings = self._executor.binder.prepare(physical)
@@ -108,7 +108,7 @@ class Encoder:
         vertex_array.render_indirect(physical.mgl, _MODES[mode], count, first)
 
     def _vertex_array(self, vertex_input: VertexInput | None) -> moderngl.VertexArray:
-        program = self._node.program
+        program = self._node.uses.program
         if self._missing:
             require_all(program, self._missing)
         serial = 0
@@ -134,5 +134,5 @@ class Encoder:
         wanted = {name for name in attributes if not name.startswith("gl_")}
         if wanted - given:
             missing = ", ".join(sorted(wanted - given))
-            raise GraphError(f"{self._node.program.shader!r}: attribute {missing} not given")
+            raise GraphError(f"{self._node.uses.program.shader!r}: attribute {missing} not given")
         return ctx.vertex_array(program, content, index, skip_errors=True)

@@ -89,16 +89,19 @@ class Executor:
             self._params = device.params.upload()
             gl.glDisable(c.SCISSOR_TEST)
             queries = device.timers.begin(len(passes))
+            named = device.names_passes
             started = time.perf_counter()
             for node, bound, query in zip(passes, plan.bound, queries, strict=False):
-                self._push(node.name)
+                if named:
+                    self._push(node.name)
                 gl.glQueryCounter(query, c.TIMESTAMP)
                 try:
                     node.bound = bound
                     self.barrier(bound.accesses)
                     self._run[type(node)](node)
                 finally:
-                    gl.glPopDebugGroup()
+                    if named:
+                        gl.glPopDebugGroup()
                 now = time.perf_counter()
                 cpu_ms.append((now - started) * 1e3)
                 started = now
@@ -181,7 +184,7 @@ class Executor:
 
     def _compute(self, node: Any) -> None:
         self._bind_pass(node)
-        compute = node.program.mgl
+        compute = node.uses.program.mgl
         if node.indirect is not None:
             source, _, _ = node.bound.accesses[-1]
             compute.run_indirect(source.mgl, node.indirect)

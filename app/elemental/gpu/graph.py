@@ -24,7 +24,6 @@ from elemental.gpu.passes import (
     RasterPass,
     Readback,
 )
-from elemental.gpu.program import Program
 from elemental.gpu.refs import (
     AnyBuffer,
     AnyHandle,
@@ -87,16 +86,14 @@ class Graph:
             format = format or like.desc.format
         if size is None or format is None:
             raise GraphError(f"texture {name} needs a size and a format, or a texture to be like")
-        if min(size) < 1:
-            raise GraphError(f"texture {name} can't have the size {size}")
-        handle = self._recall.texture(name, TextureDesc(size, format, mips or 1, layers, cube))
+        handle = self._recall.handle(_texture, name, size, format, mips or 1, layers, cube)
         handle.graph = self
         self.handles.append(handle)
         return handle
 
     def buffer(self, name: str, nbytes: int) -> BufferHandle:
         """A transient buffer of ``nbytes``."""
-        handle = self._recall.buffer(name, nbytes)
+        handle = self._recall.handle(BufferHandle, name, nbytes)
         handle.graph = self
         self.handles.append(handle)
         return handle
@@ -134,31 +131,31 @@ class Graph:
         One dimension of more than 65,535 groups is folded into two; the shader must then take its
         index from ``linear_thread_id()`` of lib/dispatch.glsl. Raises GraphError.
         """
-        program = self.device.program(shader)
         reads, writes, params = reads or _NONE, writes or _NONE, params or _NONE
         key = (
-            program, indirect,
+            shader, indirect,
             *reads, *reads.values(), None, *writes, *writes.values(), None, *params,
         )  # fmt: skip
         uses = self._recall.uses.get(key)
         if uses is None:
-            uses = Uses()
-            uses.use(self, program, reads, writes, params)
-            require_all(program, uses.missing)
+            uses = Uses(self.device.program(shader))
+            uses.use(self, reads, writes, params)
+            require_all(uses.program, uses.missing)
             if indirect is not None:
                 uses.read_buffers(self, indirect[:1])
                 uses.accesses.append((indirect[0], c.COMMAND_BARRIER, 0))
             self._recall.uses[key] = uses
-        node = ComputePass(name or program.name, uses, self._place(uses, program, params), program)
+        node = ComputePass(name or shader.name, uses, self._place(uses, params))
         if (threads is not None) + (groups is not None) + (indirect is not None) != 1:
             raise GraphError(f"{node.name}: give one of threads, groups and indirect")
         if threads is not None:
             if threads != uses.threads:
-                counts = group_counts(triple(threads), program.local_size, program, node.name)
+                size = uses.program.local_size
+                counts = group_counts(triple(threads), size, uses.program, node.name)
                 uses.threads, uses.groups = threads, counts
             node.groups = uses.groups
         elif groups is not None:
-            node.groups = group_counts(triple(groups), (1, 1, 1), program, node.name)
+            node.groups = group_counts(triple(groups), (1, 1, 1), uses.program, node.name)
         elif indirect is not None:
             node.indirect = indirect[1]
         self.passes.append(node)
@@ -192,11 +189,10 @@ class Graph:
         issues draws itself; transient buffers that it draws from are listed in ``uses``. Raises
         GraphError.
         """
-        program = self.device.program(shader)
         reads, writes, params = reads or _NONE, writes or _NONE, params or _NONE
         single = isinstance(color, (Texture, TextureHandle, Mip, Layer))
         targets: Sequence[ImageRef] = (color,) if single else color  # type: ignore[assignment]
-        name = name or program.name
+        name = name or shader.name
         clears = () if clear_color is None else clear_list(clear_color, len(targets), name)
         cleared = () if tile is not None else tuple([item is not None for item in clears])
         clears_depth = clear_depth is not None and tile is None
@@ -207,15 +203,15 @@ class Graph:
             or (state.stencil is not None and state.stencil.writes)
         )
         key = (
-            program, size, *targets, None, depth, cleared, clears_depth, writes_depth, *uses,
+            shader, size, *targets, None, depth, cleared, clears_depth, writes_depth, *uses,
             *reads, *reads.values(), None, *writes, *writes.values(), None, *params,
         )  # fmt: skip
         used = self._recall.uses.get(key)
         if used is None:
-            used = Uses()
+            used = Uses(self.device.program(shader))
             used.renders = True
             used.size = size or (0, 0)
-            used.use(self, program, reads, writes, params)
+            used.use(self, reads, writes, params)
             for target, is_cleared in zip(targets, cleared or repeat(False), strict=False):
                 used.color.append(used.attach(self, name, target, cleared=is_cleared))
             if depth is not None:
@@ -227,8 +223,8 @@ class Graph:
             used.read_buffers(self, uses)
             self._recall.uses[key] = used
         if draw is None and used.missing:
-            require_all(program, used.missing)
-        node = RasterPass(name, used, self._place(used, program, params), program, state)
+            require_all(used.program, used.missing)
+        node = RasterPass(name, used, self._place(used, params), state)
         node.clears, node.clear_depth, node.clear_stencil = clears, clear_depth, clear_stencil
         node.draw, node.vertices, node.instances = draw, vertices, instances
         node.viewport, node.tile = tile or viewport or (0, 0, *used.size), tile
@@ -308,7 +304,7 @@ class Graph:
 
     # What frames share ---------------------------------------------------------------------------
 
-    def _place(self, uses: Uses, program: Program, params: Params) -> Sequence[Placed]:
+    def _place(self, uses: Uses, params: Params) -> Sequence[Placed]:
         """Hand the values of a pass's uniform blocks to the frame's buffer."""
         add = self.device.params.add
         placed = []
@@ -316,7 +312,7 @@ class Graph:
             if slot.unit >= 0:
                 offset, nbytes = add(values)
                 if nbytes != slot.size:
-                    check_block_size(slot, nbytes, program)
+                    check_block_size(slot, nbytes, uses.program)
                 placed.append((slot.unit, offset, nbytes))
         return placed
 
@@ -344,3 +340,9 @@ class Graph:
                     uses.accesses.append((resource, bit, 0))
             self._recall.uses[key] = uses
         return uses
+
+
+def _texture(name: str, size: tuple[int, ...], *shape: Any) -> TextureHandle:
+    if min(size) < 1:
+        raise GraphError(f"texture {name} can't have the size {size}")
+    return TextureHandle(name, TextureDesc(size, *shape))

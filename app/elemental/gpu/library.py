@@ -162,6 +162,7 @@ class ShaderLibrary:
             self._programs[shader].release()
             self._programs[shader] = program
             self.version += 1
+            self._device.executor.recall.clear()  # what is known of the old program's slots
             for file in program.files:
                 self._stamps.setdefault(file, _stamp(file))
             _log.info("reloaded %s", shader.name)

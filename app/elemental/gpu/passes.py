@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
-from elemental.gpu.program import Program
 from elemental.gpu.refs import Resource
 from elemental.gpu.state import RasterState
 from elemental.gpu.uses import Bound, Uses
@@ -51,11 +50,10 @@ class Pass:
 class ComputePass(Pass):
     """A dispatch."""
 
-    __slots__ = ("groups", "indirect", "program")
+    __slots__ = ("groups", "indirect")
 
-    def __init__(self, name: str, uses: Uses, params: Sequence[Placed], program: Program) -> None:
+    def __init__(self, name: str, uses: Uses, params: Sequence[Placed]) -> None:
         Pass.__init__(self, name, uses, params)
-        self.program = program
         self.groups = (0, 0, 0)
         self.indirect: int | None = None
         """Byte offset of the group counts in the buffer that is used last."""
@@ -65,7 +63,7 @@ class RasterPass(Pass):
     """Draws into targets."""
 
     __slots__ = (
-        "clear_depth", "clear_stencil", "clears", "draw", "instances", "program", "state", "tile",
+        "clear_depth", "clear_stencil", "clears", "draw", "instances", "state", "tile",
         "vertices", "viewport",
     )  # fmt: skip
 
@@ -74,11 +72,10 @@ class RasterPass(Pass):
         name: str,
         uses: Uses,
         params: Sequence[Placed],
-        program: Program,
         state: RasterState,
     ) -> None:
         Pass.__init__(self, name, uses, params)
-        self.program, self.state = program, state
+        self.state = state
         self.clears: Sequence[tuple[float, ...] | None] = ()
         """Of each colour target; empty where none is cleared."""
         self.clear_depth: float | None = None

@@ -226,6 +226,10 @@ class Tracked(Protocol):
     ordered_at: int
 
 
+_BITS = 16
+"""Of glMemoryBarrier, GL 4.4's included."""
+
+
 class Hazards:
     """Which barrier bits must precede each pass, over all frames of a device.
 
@@ -239,7 +243,7 @@ class Hazards:
 
     def __init__(self) -> None:
         self.clock = 1
-        self._issued: dict[int, int] = {}
+        self._issued = {1 << number: 0 for number in range(_BITS)}
 
     def barrier_before(self, accesses: Sequence[tuple[Tracked, int, int]]) -> int:
         """Bits to issue before a pass that makes ``accesses`` (state, bit, shader write or 0)."""
@@ -252,7 +256,7 @@ class Hazards:
                 since = state.ordered_at
             else:
                 since = state.access_at
-            if since and since > issued.get(bit, 0):
+            if since > issued[bit]:
                 bits |= bit
         if bits:
             self.issued(bits)
@@ -272,8 +276,7 @@ class Hazards:
 
     def issued(self, bits: int) -> None:
         """Note that a barrier of ``bits`` was issued now."""
-        bit = 1
-        while bit <= bits:
-            if bits & bit:
-                self._issued[bit] = self.clock
-            bit <<= 1
+        while bits:
+            lowest = bits & -bits
+            self._issued[lowest] = self.clock
+            bits ^= lowest

@@ -81,6 +81,7 @@ class TargetPool(Generic[T]):
         self._frame = 0
         self._free: dict[Hashable, list[tuple[int, T]]] = {}
         self._idle_since: dict[int, int] = {}
+        """Of what is free: the frame in which it was given back, the longest ago first."""
         self._lives: dict[int, _Life[T]] = {}
 
     def acquire(self, description: Hashable) -> T:
@@ -93,6 +94,7 @@ class TargetPool(Generic[T]):
             life = self._lives[serial]
             life.reuses += 1
             life.in_use = True
+            del self._idle_since[serial]
             return resource
         try:
             resource = self._make(description)
@@ -116,14 +118,16 @@ class TargetPool(Generic[T]):
         """Count a frame and release what lay idle for ``idle_frames``."""
         self._frame += 1
         limit = self._frame - self.idle_frames
-        for description, free in list(self._free.items()):
-            if any(self._idle_since[serial] < limit for serial, _ in free):
-                stale = [r for serial, r in free if self._idle_since[serial] < limit]
-                free[:] = [item for item in free if self._idle_since[item[0]] >= limit]
-                for resource in stale:
-                    self._drop(resource)
+        while self._idle_since:
+            serial, since = next(iter(self._idle_since.items()))
+            if since >= limit:
+                return
+            life = self._lives[serial]
+            free = self._free[life.description]
+            free.remove((serial, life.resource))
             if not free:
-                del self._free[description]
+                del self._free[life.description]
+            self._drop(life.resource)
 
     def clear(self) -> None:
         """Release everything that is free."""

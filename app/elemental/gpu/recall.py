@@ -6,7 +6,6 @@ from collections.abc import Callable, Hashable, Sequence
 from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
 from elemental.gpu.refs import BufferHandle, TextureHandle
-from elemental.gpu.shape import TextureDesc
 
 if TYPE_CHECKING:
     from elemental.gpu.binder import Binding
@@ -57,7 +56,7 @@ class Recent(Generic[V]):
 
 
 class _Namesakes:
-    """Handles of one name and description, in the order of their declaration in a frame."""
+    """Handles that are declared alike, in the order of their declaration in a frame."""
 
     __slots__ = ("frame", "given", "handles")
 
@@ -90,23 +89,17 @@ class Recall:
             for known in self._known:
                 known.grow_old()
 
-    def texture(self, name: str, desc: TextureDesc) -> TextureHandle:
-        """This frame's next handle of that name and description."""
-        return self._next(name, desc, TextureHandle)
-
-    def buffer(self, name: str, nbytes: int) -> BufferHandle:
-        """This frame's next handle of that name and size."""
-        return self._next(name, nbytes, BufferHandle)
-
-    def _next(self, name: str, description: Any, make: Callable[[str, Any], H]) -> H:
-        key = (name, description)
+    def handle(self, make: Callable[..., H], *declared: Hashable) -> H:
+        """This frame's next handle that is declared so; where there is none yet, ``make`` makes it
+        of the same arguments."""
+        key = (make, declared)
         met = self._handles.get(key)
         if met is None:
             met = self._handles[key] = _Namesakes()
         if met.frame != self._frame:
             met.frame, met.given = self._frame, 0
         if met.given == len(met.handles):
-            met.handles.append(make(name, description))
+            met.handles.append(make(*declared))
         handle: H = met.handles[met.given]
         met.given += 1
         return handle

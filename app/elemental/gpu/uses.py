@@ -52,12 +52,13 @@ class Uses:
     """Resources by what is done with them; see plan.PlannedPass."""
 
     __slots__ = (
-        "accesses", "bindings", "blocks", "bound", "color", "depth", "groups", "handles",
-        "has_side_effect", "missing", "modifies", "overwrites", "reads", "renders", "size",
-        "targets", "threads",
+        "_program", "accesses", "bindings", "blocks", "bound", "color", "depth", "groups",
+        "handles", "has_side_effect", "missing", "modifies", "overwrites", "reads", "renders",
+        "size", "targets", "threads",
     )  # fmt: skip
 
-    def __init__(self) -> None:
+    def __init__(self, program: Program | None = None) -> None:
+        self._program = program
         self.reads: list[Resource] = []
         self.modifies: list[Resource] = []
         self.overwrites: list[Resource] = []
@@ -83,6 +84,12 @@ class Uses:
         """What the handles were when ``bound`` was made."""
         self.bound: Bound | None = None
 
+    @property
+    def program(self) -> Program:
+        """Of a dispatch or a draw."""
+        assert self._program is not None, "clears, copies and read-backs have none"
+        return self._program
+
     def transients(self) -> list[AnyHandle]:
         """The handles among the resources."""
         if self.handles is None:
@@ -93,12 +100,12 @@ class Uses:
     def use(
         self,
         graph: Graph,
-        program: Program,
         reads: Mapping[str, Ref],
         writes: Mapping[str, Ref],
         params: Params,
     ) -> None:
-        """Note what a program is given by its names. Raises GraphError for what does not fit."""
+        """Note what the program is given by its names. Raises GraphError for what does not fit."""
+        program = self.program
         plan = name_plan(program, reads, writes, params)
         self.blocks, self.missing = plan.params, plan.missing
         for slots, refs, used, written in (

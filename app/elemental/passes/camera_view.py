@@ -16,10 +16,13 @@ LARGEST_RANGE = 1e6
 """far / near that still leaves a 24 bit depth buffer something to tell apart [inferred]."""
 
 
+_HIGH = np.indices((2, 2, 2)).reshape(3, 8).T.astype(bool)
+"""(8, 3) which of a box's two ends each of its corners has."""
+
+
 def box_corners(low: FloatArray, high: FloatArray) -> FloatArray:
     """(8, 3) float32 corners of the box low..high."""
-    picks = np.indices((2, 2, 2)).reshape(3, 8).T.astype(bool)
-    return np.where(picks, high, low).astype(np.float32)
+    return np.where(_HIGH, high, low).astype(np.float32)
 
 
 def clip_range(camera: Camera, bounds: tuple[FloatArray, FloatArray]) -> tuple[float, float]:

@@ -22,6 +22,7 @@ class Culling:
         self._commands, self._order = commands, order
         self._segment = np.repeat(np.arange(len(commands)), commands["instance_count"])
         self._low, self._high, self._visible = low, high, visible
+        self._extents = _extents(low, high)
         self._revision = 0
         self._looked: dict[str, tuple[bytes, int]] = {}
         self._seen: dict[str, bytes] = {}
@@ -29,10 +30,11 @@ class Culling:
     @property
     def centers(self) -> Array:
         """(N, 3) of the boxes."""
-        return (self._low + self._high) / 2
+        return self._extents[0]
 
     def moved(self) -> None:
         """Some boxes changed."""
+        self._extents = _extents(self._low, self._high)
         self._revision += 1
 
     def look(
@@ -46,7 +48,7 @@ class Culling:
         fresh = [k for k, name in enumerate(viewers) if self._looked.get(name) != keys[k]]
         if not fresh:
             return
-        inside = _inside(clip_from_world[fresh], self._low, self._high) & self._visible
+        inside = _inside(clip_from_world[fresh], *self._extents) & self._visible
         for k, seen in zip(fresh, inside[:, self._order], strict=True):
             viewer = viewers[k]
             self._looked[viewer] = keys[k]
@@ -66,24 +68,29 @@ class Culling:
 
     def visible(self, clip_from_world: Array) -> Array:
         """(N,) bool: visible instances whose box is not wholly outside a plane of the frustum."""
-        return in_frustum(clip_from_world, self._low, self._high) & self._visible
+        return np.asarray(_inside(clip_from_world[None], *self._extents)[0] & self._visible)
 
 
 def in_frustum(clip_from_world: Array, low: Array, high: Array) -> Array:
     """(N,) bool: which boxes low, high (N, 3) are not wholly outside one of the six planes."""
-    return np.asarray(_inside(clip_from_world[None], low, high)[0])
+    return np.asarray(_inside(clip_from_world[None], *_extents(low, high))[0])
 
 
 def views_with_any(clip_from_world: Array, low: Array, high: Array) -> Array:
     """(V,) bool: which of the matrices (V, 4, 4) have any of the boxes in their frustum."""
-    return np.asarray(_inside(clip_from_world, low, high).any(axis=1))
+    return np.asarray(_inside(clip_from_world, *_extents(low, high)).any(axis=1))
 
 
-def _inside(matrices: Array, low: Array, high: Array) -> Array:
-    """(V, N) bool of `in_frustum`."""
+def _extents(low: Array, high: Array) -> tuple[Array, Array]:
+    """(centres, half diagonals), each (N, 3) float64, of boxes."""
+    low = low.astype(np.float64)
+    return (low + high) / 2, (high - low) / 2
+
+
+def _inside(matrices: Array, center: Array, half: Array) -> Array:
+    """(V, N) bool of `in_frustum`; center, half (N, 3) of the boxes."""
     m = matrices.astype(np.float64)
-    planes = np.concatenate([m[:, 3:] + m[:, :3], m[:, 3:] - m[:, :3]], axis=1)
-    center, half = (low.astype(np.float64) + high) / 2, (high.astype(np.float64) - low) / 2
-    normals = planes[..., :3].swapaxes(1, 2)
-    nearest = center @ normals + half @ np.abs(normals) + planes[:, None, :, 3]
-    return np.asarray(np.all(nearest >= 0.0, axis=2))
+    planes = np.concatenate([m[:, 3:] + m[:, :3], m[:, 3:] - m[:, :3]], axis=1).reshape(-1, 4)
+    normals = planes[:, :3]
+    nearest = normals @ center.T + np.abs(normals) @ half.T + planes[:, 3:]  # (6 V, N)
+    return np.asarray((nearest >= 0.0).reshape(len(m), 6, len(center)).all(axis=1))

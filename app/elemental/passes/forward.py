@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import groupby
-from typing import Literal
+from typing import Literal, TypeAlias
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from elemental.gpu.refs import Ref, Sampled, TextureHandle
 from elemental.gpu.shaders import Raster
 from elemental.gpu.state import RasterState
 from elemental.passes.behind import grab_behind
+from elemental.passes.camera_view import box_corners
 from elemental.passes.gbuffer import VERT, GBuffer
 from elemental.passes.light_cells import ALL_LIGHTS, NO_CELLS, VIEW_CELLS, LightCells
 from elemental.passes.material_pack import ALL_SLOTS
@@ -55,6 +56,9 @@ STATES = {
 }
 """By whether it refracts, and the side that is drawn. Glass replaces what is behind it, so the
 nearest of its own surfaces has to win, whatever the order of its triangles."""
+
+ScreenBox: TypeAlias = tuple[float, float, float, float]
+"""Lowest x and y, highest x and y in clip space."""
 
 GRABS_MAX = 4
 """Pictures of what is behind glass, at most; further layers share the last [inferred: what stands
@@ -174,7 +178,7 @@ def layers_of(scene: GpuScene, clip_from_world: Array, eye: Array) -> Iterator[L
     where anything was drawn, since the last one, in its part of the view. eye (3,) m.
     """
     grab = -1
-    drawn: list[Array] = []
+    drawn: list[ScreenBox] = []
     for batch in scene.back_to_front(eye, clip_from_world):
         box = screen_box(clip_from_world, *scene.box(batch.instance))
         sides: tuple[Side, ...] = ("back", "front") if batch.double_sided else ("front",)
@@ -188,16 +192,15 @@ def layers_of(scene: GpuScene, clip_from_world: Array, eye: Array) -> Iterator[L
             yield Layer(batch, side, grab if glass else -1)
 
 
-def screen_box(clip_from_world: Array, low: Array, high: Array) -> Array:
-    """((x, y) low, (x, y) high) in clip space of a world box; all of it where the eye is inside."""
-    picks = np.indices((2, 2, 2)).reshape(3, 8).T.astype(bool)
-    corners = np.append(np.where(picks, high, low), np.ones((8, 1)), axis=1)
-    clip = corners @ clip_from_world.T
+def screen_box(clip_from_world: Array, low: Array, high: Array) -> ScreenBox:
+    """That of a world box; all of the picture where the eye is inside."""
+    corners = box_corners(low, high).astype(np.float64)
+    clip = corners @ clip_from_world[:, :3].T + clip_from_world[:, 3]
     if clip[:, 3].min() <= 0.0:
-        return np.array([[-1.0, -1.0], [1.0, 1.0]])
+        return -1.0, -1.0, 1.0, 1.0
     xy = clip[:, :2] / clip[:, 3:]
-    return np.array([xy.min(axis=0), xy.max(axis=0)])
+    return (*xy.min(axis=0).tolist(), *xy.max(axis=0).tolist())
 
 
-def _overlap(a: Array, b: Array) -> bool:
-    return bool(np.all(a[0] <= b[1]) and np.all(b[0] <= a[1]))
+def _overlap(a: ScreenBox, b: ScreenBox) -> bool:
+    return a[0] <= b[2] and b[0] <= a[2] and a[1] <= b[3] and b[1] <= a[3]

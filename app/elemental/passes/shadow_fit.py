@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -130,7 +131,15 @@ def _rim_scale(resolution: int) -> float:
 
 
 def _light_rotation(light: Light) -> FloatArray:
-    return transforms.look_at((0.0, 0.0, 0.0), light.direction)
+    return _rotation(*light.direction.tolist())
+
+
+@lru_cache(maxsize=64)
+def _rotation(x: float, y: float, z: float) -> FloatArray:
+    """view_from_world along a direction: a sun's is asked for in each frame."""
+    found = transforms.look_at((0.0, 0.0, 0.0), (x, y, z))
+    found.flags.writeable = False
+    return found
 
 
 def _ortho(
