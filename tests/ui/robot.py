@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from elemental.gpu.device import Device
 from elemental.session import Viewpoint, set_stage
 from elemental.ui.desk import Desk, Words
 from elemental.ui.headless import HeadlessDesk
+from elemental.ui.images import Place
 from elemental.ui.words import Rect
 
 SIZE = (1000, 640)
@@ -116,6 +118,27 @@ class Robot:
         io.add_key_event(imgui.Key.mod_ctrl, False)
         self.frames()
         self.type(text)
+
+    def await_image(self, place: Place) -> None:
+        """Let frames pass until no file is being read for a place."""
+        end = time.monotonic() + 30
+        self.frames(2)
+        while self.desk.images.is_reading(place):
+            assert time.monotonic() < end
+            time.sleep(0.005)
+            self.frames()
+        self.frames(2)
+
+    def enter_image(self, place: Place, text: str) -> None:
+        """Type a file's name into the row of a place, or nothing, and wait for its image."""
+        self.click(place.name)
+        if text:
+            self.type(text)
+        else:
+            self.key(imgui.Key.a, imgui.Key.mod_ctrl)
+            self.key(imgui.Key.delete)
+            self.key(imgui.Key.enter)
+        self.await_image(place)
 
     def key(self, key: imgui.Key, modifier: imgui.Key | None = None) -> None:
         """Press a key."""

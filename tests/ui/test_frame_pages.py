@@ -12,8 +12,8 @@ from imgui_bundle import imgui
 import panel_cost
 from elemental.core.images import read_exr
 from elemental.gpu.device import Device
-from elemental.ui.panel.buffers import memory_facts
 from elemental.ui.panel.graph import told
+from elemental.ui.panel.targets import memory_facts
 from ui.robot import Robot
 
 Hands = Callable[..., Robot]

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-import time
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from imgui_bundle import imgui
 
 from elemental.core.images import write_png
 from elemental.ui.images import Place
@@ -32,28 +30,6 @@ def bars(tmp_path: Path) -> Path:
     return path
 
 
-def arrive(robot: Robot) -> None:
-    """Let frames pass until no file is being read."""
-    end = time.monotonic() + 30
-    robot.frames(2)
-    while robot.desk.images.is_reading(PLACE):
-        assert time.monotonic() < end
-        time.sleep(0.005)
-        robot.frames()
-    robot.frames(2)
-
-
-def enter(robot: Robot, text: str) -> None:
-    robot.click("mask")
-    if text:
-        robot.type(text)
-    else:
-        robot.key(imgui.Key.a, imgui.Key.mod_ctrl)
-        robot.key(imgui.Key.delete)
-        robot.key(imgui.Key.enter)
-    arrive(robot)
-
-
 def first_light(path: Path) -> dict[str, object]:
     light: dict[str, object] = tomllib.loads(path.read_text())["lights"][0]
     return light
@@ -67,7 +43,7 @@ def test_a_mask_is_typed_drifts_is_saved_and_taken_back(
     desk, document = robot.desk, robot.desk.document
     bare = robot.pixels()
     assert not robot.sees("mask_scroll")  # nothing to drift
-    enter(robot, "masks/bars.png")
+    robot.enter_image(PLACE, "masks/bars.png")
     mask = document.state.lights[0].mask
     assert mask is not None
     assert mask.file == bars
@@ -99,7 +75,7 @@ def test_a_mask_is_typed_drifts_is_saved_and_taken_back(
     desk.act("reload")
     assert np.array_equal(robot.pixels(), drifted)
 
-    enter(robot, "")
+    robot.enter_image(PLACE, "")
     document = desk.document
     assert np.array_equal(robot.pixels(), bare)
     desk.act("save")
@@ -117,7 +93,7 @@ def test_a_mask_is_looked_for_and_reset(hands: Hands, scene_file: Path, bars: Pa
     robot.click("dialog/masks")
     robot.click("dialog/bars.png")
     robot.click("dialog/Open")
-    arrive(robot)
+    robot.await_image(PLACE)
     assert robot.desk.document.state.lights[0].mask is not None
     robot.click("reset mask")
     assert robot.desk.document.state.lights[0].mask is None
@@ -127,7 +103,7 @@ def test_a_mask_is_looked_for_and_reset(hands: Hands, scene_file: Path, bars: Pa
 def test_a_bad_mask_is_told_and_changes_nothing(hands: Hands, scene_file: Path) -> None:
     (scene_file.parent / "text.png").write_bytes(b"no image")
     robot = hands(scene_file, page="Lights", size=SIZE)
-    enter(robot, "text.png")
+    robot.enter_image(PLACE, "text.png")
     assert not robot.desk.document.steps
     assert robot.sees("problem mask")
     said = robot.desk.log.entries[-1]

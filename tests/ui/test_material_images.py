@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import threading
-import time
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from imgui_bundle import imgui
 
 from elemental.core.images import write_png
 from elemental.scene.materials import Texture
@@ -33,34 +31,12 @@ def blue(tmp_path: Path) -> Path:
     return path
 
 
-def arrive(robot: Robot) -> None:
-    """Let frames pass until no file is being read."""
-    end = time.monotonic() + 30
-    robot.frames(2)
-    while robot.desk.images.is_reading(PLACE):
-        assert time.monotonic() < end
-        time.sleep(0.005)
-        robot.frames()
-    robot.frames(2)
-
-
-def enter(robot: Robot, text: str) -> None:
-    robot.click(ROW)
-    if text:
-        robot.type(text)
-    else:
-        robot.key(imgui.Key.a, imgui.Key.mod_ctrl)
-        robot.key(imgui.Key.delete)
-        robot.key(imgui.Key.enter)
-    arrive(robot)
-
-
 def test_an_image_is_typed_saved_beside_the_scene_and_taken_back(
     hands: Hands, scene_file: Path, blue: Path
 ) -> None:
     robot = hands(scene_file, page="Materials", size=SIZE)
     bare = robot.pixels()
-    enter(robot, "images/blue.png")
+    robot.enter_image(PLACE, "images/blue.png")
     document = robot.desk.document
     slot = document.state.materials[0].base_color_texture
     assert slot is not None
@@ -81,7 +57,7 @@ def test_an_image_is_typed_saved_beside_the_scene_and_taken_back(
     assert not document.unsaved
     robot.desk.act("reload")
     assert np.array_equal(robot.pixels(), worn)
-    enter(robot, "")
+    robot.enter_image(PLACE, "")
     assert np.array_equal(robot.pixels(), bare)
     robot.desk.act("save")
     table = tomllib.loads(scene_file.read_text())["materials"]
@@ -98,7 +74,7 @@ def test_an_image_is_looked_for(hands: Hands, scene_file: Path, blue: Path) -> N
     robot.click("dialog/images")
     robot.click("dialog/blue.png")
     robot.click("dialog/Open")
-    arrive(robot)
+    robot.await_image(PLACE)
     slot = robot.desk.document.state.materials[0].base_color_texture
     assert slot is not None
     assert robot.desk.stage.scene.textures[slot.texture].name == "blue"
@@ -125,7 +101,7 @@ def test_a_bad_file_is_told_and_changes_nothing(
     if content is not None:
         (scene_file.parent / name).write_bytes(content)
     robot = hands(scene_file, page="Materials", size=SIZE)
-    enter(robot, name)
+    robot.enter_image(PLACE, name)
     assert not robot.desk.document.steps
     assert robot.sees(f"problem {ROW}")
     said = robot.desk.log.entries[-1]
@@ -134,7 +110,7 @@ def test_a_bad_file_is_told_and_changes_nothing(
     assert reason in said.text
     monkeypatch.setattr(robot.desk.device, "largest_texture_px", 4)
     write_png(scene_file.parent / "wide.png", np.zeros((1, 8, 3), np.uint8))
-    enter(robot, "wide.png")
+    robot.enter_image(PLACE, "wide.png")
     assert "is 8x1; this driver takes 4 pixels a side" in robot.desk.log.entries[-1].text
     robot.click(f"reset {ROW}")
     assert not robot.sees(f"problem {ROW}")
@@ -148,7 +124,7 @@ def test_whatever_reading_raises_is_told(
 
     monkeypatch.setattr(images, "read_texture", broken)
     robot = hands(scene_file, page="Materials", size=SIZE)
-    enter(robot, "blue.png")
+    robot.enter_image(PLACE, "blue.png")
     assert robot.sees(f"problem {ROW}")
     assert "blue.png: can't be read (can't start new thread)" in robot.desk.log.entries[-1].text
 
@@ -172,7 +148,7 @@ def test_frames_go_on_while_a_file_is_read(
     assert robot.desk.drawn == drawn + 3
     assert robot.desk.images.is_reading(PLACE)
     gate.set()
-    arrive(robot)
+    robot.await_image(PLACE)
     assert robot.desk.document.state.materials[0].base_color_texture is not None
 
 
@@ -181,7 +157,7 @@ def test_a_scene_that_is_read_again_keeps_the_images(
 ) -> None:
     """Settings that the scene is read by come between two choices."""
     robot = hands(scene_file, page="Materials", size=SIZE)
-    enter(robot, "images/blue.png")
+    robot.enter_image(PLACE, "images/blue.png")
     worn = robot.pixels()
     robot.desk.document.set("scene.animation", "none")
     robot.frames(3)

@@ -76,18 +76,13 @@ def test_volumes_are_copied_renamed_and_deleted(hands: Hands, scene_file: Path) 
     assert len(robot.desk.document.state.volumes) == 2
 
 
-def test_the_gizmo_moves_a_volume_in_one_step(hands: Hands, scene_file: Path) -> None:
-    robot = hands(scene_file, page="Volumes", size=TALL)
+def pull_gizmo(robot: Robot) -> float:
+    """Pull the middle of the first volume's gizmo to the right. Returns where it was across, px."""
     desk = robot.desk
-    desk.document.set_volumes((Volume("v", center=(0.0, 1.0, 0.0)),), "add v")
-    robot.frames(3)
-    steps = desk.document.steps
-    left, right = robot.find("Scene/search")[2] + 8, robot.find("add box")[0] - 8
     lens = Lens.of(desk.camera, desk.stage.scene.bounds(), desk.place)
-    center = np.array([[0.0, 1.0, 0.0]])
+    center = np.array([desk.document.state.volumes[0].center])
     x, y, *_ = lens.lines(center, center)[0]
-    assert left < x < right
-    robot.move(x, y)  # the ring in the middle moves across the view
+    robot.move(x, y)
     robot.frames()
     assert desk.wants_mouse
     robot.button(True)
@@ -95,6 +90,17 @@ def test_the_gizmo_moves_a_volume_in_one_step(hands: Hands, scene_file: Path) ->
         robot.move(x + pixels, y)
     robot.button(False)
     robot.frames(2)
+    return x
+
+
+def test_the_gizmo_moves_a_volume_in_one_step(hands: Hands, scene_file: Path) -> None:
+    robot = hands(scene_file, page="Volumes", size=TALL)
+    desk = robot.desk
+    desk.document.set_volumes((Volume("v", center=(0.0, 1.0, 0.0)),), "add v")
+    robot.frames(3)
+    steps = desk.document.steps
+    left, right = robot.find("Scene/search")[2] + 8, robot.find("add box")[0] - 8
+    assert left < pull_gizmo(robot) < right  # the ring in the middle moves across the view
     moved = desk.document.state.volumes[0].center
     assert moved[0] > 0.01
     assert moved[1] == pytest.approx(1.0, abs=0.02)
@@ -112,17 +118,7 @@ def test_the_gizmo_scales_a_volume_in_one_step(hands: Hands, scene_file: Path) -
     robot.click("gizmo")
     robot.click("gizmo=Scale")
     steps = desk.document.steps
-    lens = Lens.of(desk.camera, desk.stage.scene.bounds(), desk.place)
-    center = np.array([[0.0, 1.0, 0.0]])
-    x, y, *_ = lens.lines(center, center)[0]
-    robot.move(x, y)  # the middle scales along all axes
-    robot.frames()
-    assert desk.wants_mouse
-    robot.button(True)
-    for pixels in (10, 20, 40):
-        robot.move(x + pixels, y)
-    robot.button(False)
-    robot.frames(2)
+    pull_gizmo(robot)  # the middle scales along all axes
     size = desk.document.state.volumes[0].size
     assert size[0] > 1.1
     assert size == pytest.approx((size[0],) * 3)

@@ -21,6 +21,7 @@ from elemental.ui import editor, reopening
 from elemental.ui.panel import buffers
 from elemental.ui.panel.file_dialog import FileDialog
 from elemental.ui.panel.scene import Selection
+from elemental.ui.panel.targets import targets_of
 from elemental.ui.sequence_job import SequenceJob, staged
 
 if TYPE_CHECKING:
@@ -216,7 +217,7 @@ def choose(desk: Desk, selection: Selection) -> None:
 def look_at(desk: Desk, name: str) -> None:
     """Show a target of the frame in the buffer viewer."""
     report = desk.observers.report
-    for target, _ in buffers.targets_of(report) if report is not None else ():
+    for target, _ in targets_of(report) if report is not None else ():
         if target.name == name:
             buffers.choose(desk.pages.buffers, target)
             desk.workspace.bring_to_front("Buffers")

@@ -6,17 +6,17 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from imgui_bundle import imgui
 
-from elemental.gpu.graph_report import GraphReport, GraphResource
+from elemental.gpu.graph_report import GraphReport
 from elemental.passes.inspect import CHANNELS, COLORS, STENCIL, Inspector, Look, Target
 from elemental.passes.texels import Pixels
 from elemental.ui import icons, theme
+from elemental.ui.panel.targets import describe, memory_facts, targets_of, title_of
 from elemental.ui.widgets import Widgets
 
 LIST_SHARE = 0.26
@@ -36,7 +36,6 @@ MEMORY_HELP = (
 LEAST_PICTURE_EM = 5.0
 ZOOM_PER_NOTCH = 1.25
 LARGEST_TEXEL_PX = 64.0
-KIB = 1024
 
 
 @dataclass
@@ -91,23 +90,6 @@ def choose(view: BufferView, target: Target) -> None:
     view.step = 0.0
 
 
-def targets_of(report: GraphReport) -> list[tuple[Target, GraphResource]]:
-    """The textures of a frame, in the order in which they are first used."""
-    seen: Counter[tuple[str, tuple[int, ...], str]] = Counter()
-    found = []
-    for resource in sorted(report.resources, key=lambda r: r.first_pass):
-        if resource.kind == "texture":
-            key = (resource.name, resource.size, resource.format)
-            found.append((Target(*key, seen[key]), resource))
-            seen[key] += 1
-    return found
-
-
-def title_of(target: Target) -> str:
-    """A target's name, numbered where the frame has several of that name."""
-    return f"{target.name} #{target.occurrence + 1}" if target.occurrence else target.name
-
-
 def _follow(view: BufferView, report: GraphReport | None) -> None:
     """Take over which targets there are; look at the first one at first."""
     if report is None:
@@ -149,16 +131,6 @@ def _list(w: Widgets, view: BufferView, report: GraphReport | None) -> None:
         imgui.separator()
         w.facts("memory", memory_facts(view.look.target, report))
         w.tooltip(MEMORY_HELP)
-
-
-def describe(resource: GraphResource) -> str:
-    """``320x180 RGBA16F, 450 KiB``."""
-    if resource.kind == "buffer":
-        return f"buffer, {resource.nbytes / KIB:,.1f} KiB"
-    size = "x".join(map(str, resource.size))
-    layers = f" ({resource.layers} layers)" if resource.layers > 1 else ""
-    mips = f", {resource.mips} levels" if resource.mips > 1 else ""
-    return f"{size}{layers} {resource.format}{mips}, {resource.nbytes / KIB:,.0f} KiB"
 
 
 def _controls(w: Widgets, view: BufferView, look: Look, inspector: Inspector, save: Save) -> None:
@@ -288,21 +260,3 @@ def _values(w: Widgets, look: Look, inspector: Inspector, size: tuple[int, int])
         digits = [f"{n:,}" if isinstance(n, int) else f"{n:.6g}" for n in numbers]
         facts += [(name, digit) for name, digit in zip("RGBA", digits, strict=False)]
     w.facts("values", facts)
-
-
-def memory_facts(target: Target, report: GraphReport) -> list[tuple[str, str]]:
-    """What a target takes, how long that is held and how often it was reused; the whole pool."""
-    found = dict(targets_of(report)).get(target)
-    if found is None:
-        return []
-    facts = [("takes", f"{found.nbytes / KIB:,.0f} KiB")]
-    held = next((one for one in report.pool.held if one.memory == found.memory), None)
-    if held is None:
-        facts.append(("", "not of the pool"))
-    else:
-        facts += [("age", f"{held.age:,}"), ("reused", f"{held.reuses:,}")]
-    return [
-        *facts,
-        ("pool", f"{report.pool.bytes / KIB**2:.1f} MiB"),
-        ("at most", f"{report.pool.high_water / KIB**2:.1f} MiB"),
-    ]

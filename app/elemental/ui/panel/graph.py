@@ -12,7 +12,7 @@ from imgui_bundle import imgui
 
 from elemental.gpu.graph_report import GraphPass, GraphReport
 from elemental.ui import theme
-from elemental.ui.panel.buffers import KIB, describe
+from elemental.ui.panel.targets import KIB, describe
 from elemental.ui.panel.timeline import hues_of, system_of
 from elemental.ui.widgets import Widgets
 
