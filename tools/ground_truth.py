@@ -60,6 +60,7 @@ def _parser() -> Parser:
         "--set", action="append", default=[], metavar="KEY=VALUE", help="a setting, repeatable"
     )
     flag("--time", "S", number(0, 1e6), 0.0, "scene time, s (0)")
+    flag("--samples", "N", whole(1, 16), 1, "of ours along a side of a pixel (1)")
     flag("--spp", "N", whole(1, MOST_SAMPLES), 512, "samples a pixel (512)")
     flag("--ours", "FILE.exr", Path, None, "compare this picture")
     flag("--out", "STEM", Path, None, "STEM.png and STEM.json (out/ground_truth/SCENE)")
@@ -67,7 +68,11 @@ def _parser() -> Parser:
 
 
 def shoot(words: argparse.Namespace, stage: Stage) -> FloatArray:
-    """Our `scene_color`, by the command line in a process of its own, seen from `stage.camera`."""
+    """Our `scene_color`, by the command line in a process of its own, seen from `stage.camera`.
+
+    Each pixel is the mean of ``words.samples`` along either side, as the reference's is of more.
+    """
+    width, height = words.size
     with tempfile.TemporaryDirectory() as folder:
         output = Path(folder) / "ours.exr"
         command = [sys.executable, "-m", "elemental", "shot", words.scene, "-o", str(output)]
@@ -75,7 +80,7 @@ def shoot(words: argparse.Namespace, stage: Stage) -> FloatArray:
             "--view",
             "scene_color",
             "--size",
-            "{}x{}".format(*words.size),
+            f"{width * words.samples}x{height * words.samples}",
             "--time",
             str(words.time),
         ]
@@ -90,7 +95,9 @@ def shoot(words: argparse.Namespace, stage: Stage) -> FloatArray:
             command += ["--set", assignment]
         if subprocess.run(command, stdout=subprocess.DEVNULL, check=False).returncode != 0:
             raise InputError("shot", "", "failed")
-        return read_environment(output)
+        fine = read_environment(output)
+        parts = fine.reshape(height, words.samples, width, words.samples, -1)
+        return np.asarray(parts.mean(axis=(1, 3)), np.float32)
 
 
 def reference(

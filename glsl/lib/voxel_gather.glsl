@@ -35,30 +35,26 @@ vec3 area_light_radiance(vec3 p_ws, vec3 normal, float spacing) {
 #define SHARED 0
 #endif
 
-// The first of them; the second is its complement.
-int part_of_voxel(uint octant) { return int((octant ^ (octant >> 1) ^ (octant >> 2)) & 1u); }
+const int TRACED_OF_GROUP = SHARED == 1 ? 2 : CONE_SPLIT;
+
+// A voxel's cones by number. Of a group's four those with the numbers 0 and 3 go together, and 1 and 2.
+int cone_of_voxel(int number, uint octant) {
+    int part = number % TRACED_OF_GROUP;
+    if (SHARED == 1) part = int((octant ^ (octant >> 1) ^ (octant >> 2)) & 1u) ^ (part * 3);
+    return number / TRACED_OF_GROUP * CONE_SPLIT + part;
+}
 
 // Cosine-weighted mean of the radiance around the normal. octant: the voxel's place in its brick.
 vec3 gathered_radiance(vec3 p_ws, vec3 normal, float spacing, uint octant) {
     vec3 from = p_ws + normal * (0.5 * spacing);
     vec3 sum = vec3(0.0);
     float weights = 0.0;
-    for (int i = 0; i < CONE_COUNT; ++i) {
-#if SHARED
-        int part = part_of_voxel(octant);
-        for (int other = 0; other < 2; ++other, part ^= 3) {
-            vec3 direction = CONE_DIRECTIONS[i * CONE_SPLIT + part];
-            float weight = cone_weight(normal, direction);
-            if (weight <= 0.0) continue;
-            sum += weight * narrow_cone(from, normal, direction).rgb;
-            weights += weight;
-        }
-#else
-        float weight = cone_group_weight(normal, i);
+    for (int i = 0; i < CONE_COUNT * TRACED_OF_GROUP; ++i) {
+        vec3 direction = CONE_DIRECTIONS[cone_of_voxel(i, octant)];
+        float weight = cone_weight(normal, direction);
         if (weight <= 0.0) continue;
-        sum += weight * diffuse_cone(from, normal, i).rgb;
+        sum += weight * narrow_cone(from, normal, direction).rgb;
         weights += weight;
-#endif
     }
     return sum / max(weights, 1e-6) + area_light_radiance(p_ws, normal, spacing);
 }

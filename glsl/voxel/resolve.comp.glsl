@@ -24,6 +24,7 @@ struct Sums {
     uvec4 albedo;
     ivec3 normal;
     uint sides_met;
+    uint sides_emitting;
     uvec3 emitted;
 };
 
@@ -36,7 +37,10 @@ uint add_fragment(inout Sums sums, uint index) {
     sums.normal += ivec3(round(normal_snorm8_unpack(fragment.normal) * 127.0));
     uvec3 radiance = uvec3(rgb9e5_unpack(fragment.emissive) * u_octree.fixed_point + 0.5);
     sums.emitted += radiance;
-    if (radiance != uvec3(0u)) ++sums.emitting;
+    if (radiance != uvec3(0u)) {
+        ++sums.emitting;
+        sums.sides_emitting |= fragment.normal >> SIDES_MET_SHIFT;
+    }
 #if KEPT_FRAGMENTS
     return links[index];
 #else
@@ -48,7 +52,7 @@ void main() {
     uint item = linear_thread_id();
     if (item >= octree_state.leaf_voxels.threads) return;
     uint voxel = leaf_voxel_of_item(item);
-    Sums sums = Sums(0u, 0u, uvec4(0u), ivec3(0), 0u, uvec3(0u));
+    Sums sums = Sums(0u, 0u, uvec4(0u), ivec3(0), 0u, 0u, uvec3(0u));
 #if KEPT_FRAGMENTS
     uint moving = head_of_voxel(voxel, MOVING_FRAGMENTS);
     for (uint link = heads[head_of_voxel(voxel, STILL_FRAGMENTS)]; link != 0u;) link = add_fragment(sums, link - 1u);
@@ -65,8 +69,10 @@ void main() {
     result.normal = packSnorm4x8(vec4(vec3(sums.normal) * (inverse / 127.0), 0.0)) & 0x00ffffffu;
     result.normal |= sums.sides_met << SIDES_MET_SHIFT;
     // Emission is averaged over what emits: a lamp keeps its power where the ceiling that it hangs
-    // from shares its voxels.
-    float scale = sums.emitting > 0u ? 1.0 / (float(sums.emitting) * u_octree.fixed_point) : 0.0;
+    // from shares its voxels. A leaf shows one radiance on all sides: those that only other surfaces
+    // cover must not add to the power.
+    float sides = float(bitCount(sums.sides_emitting)) / float(max(bitCount(sums.sides_met), 1));
+    float scale = sums.emitting > 0u ? sides / (float(sums.emitting) * u_octree.fixed_point) : 0.0;
     result.emissive = rgb9e5_pack(vec3(sums.emitted) * scale);
     attributes[voxel] = result;
 }

@@ -41,6 +41,9 @@ SETTINGS = (
     "shadow.resolution=1024",
 )
 """Stated, so that another default changes nothing here."""
+SAMPLES = 3
+"""Of our pictures along a side of a pixel. The path tracer's pixels are means over their area; one
+of ours says what stands at its middle, which of an arcade seen from afar is off by a tenth."""
 
 
 @dataclass(frozen=True)
@@ -86,13 +89,15 @@ SLACK = {"energy": 0.005, "p50": 0.005, "p90": 0.015, "flip": 0.004}
 
 
 def draw(device: Device, case: Case) -> Array:
-    """Our `scene_color` (H, W, 3)."""
+    """Our `scene_color` (H, W, 3), each pixel the mean of SAMPLES x SAMPLES."""
     stage = case.stage()
-    renderer = Renderer(device, stage.scene, stage.settings, case.size)
+    width, height = case.size
+    renderer = Renderer(device, stage.scene, stage.settings, (width * SAMPLES, height * SAMPLES))
     try:
         picture = renderer.read(renderer.render(stage.camera, 0.0, 0, "scene_color"))
         device.finish()
-        return np.ascontiguousarray(picture[..., :3], np.float32)
+        fine = picture[..., :3].reshape(height, SAMPLES, width, SAMPLES, 3)
+        return np.ascontiguousarray(fine.mean(axis=(1, 3)), np.float32)
     finally:
         renderer.release()
 

@@ -21,10 +21,10 @@ from elemental.passes.voxel.grid import Grid
 from elemental.scene.model import Scene
 from gpu.rig import at, scene, vector
 from gpu.voxel.digest import contents, digest
-from gpu.voxel.pools import Pools, rgb9e5_values, sides_met, united_sides
+from gpu.voxel.pools import SIDE_BITS, Pools, rgb9e5_values, sides_met, united_sides
 from gpu.voxel.scenes import colored, glowing, jumble, part
 from gpu.voxel.stage import MakeStage, Stage
-from shapes import quad
+from shapes import box, quad
 
 Array = npt.NDArray[Any]
 ROOT = Path(__file__).parents[3]
@@ -98,17 +98,31 @@ def test_a_build_keeps_nothing_of_the_one_before(device: Device, stage: MakeStag
     assert contents(made) == contents(fresh)
 
 
+def count_bits(sides: Array) -> Array:
+    """How many sides are met."""
+    return np.asarray((sides[..., None] >> SIDE_BITS & 1).sum(axis=-1))
+
+
 def lamp_on_a_ceiling() -> Scene:
     """A lamp a third of a voxel beside a ceiling: fragments of both share voxels."""
     ceiling, lamp = part(quad(2.0), 0, at(0, 0.01, 0)), part(quad(0.7), 1, at(0, 0.02, 0))
     return scene(ceiling, lamp, materials=[colored(0.9, 0.6, 0.3), glowing(5.0, 3.0, 1.0)])
 
 
-@pytest.mark.parametrize("world", [jumble, lamp_on_a_ceiling])
+def pool_of_light() -> Scene:
+    """A glowing square in a dark frame, two voxels high: fragments of both share voxels."""
+    bars = [box((0.06, 0.06, 0.76)), box((0.06, 0.06, 0.76)), box((0.7, 0.06, 0.06))]
+    places = [at(-0.38, 0, 0), at(0.38, 0, 0), at(0, 0, 0.38)]
+    frame = [part(bar, 0, place) for bar, place in zip(bars, places, strict=True)]
+    glow = part(quad(0.7), 1, at(0, 0.01, 0))
+    return scene(*frame, glow, materials=[colored(0.5, 0.5, 0.5), glowing(5.0, 3.0, 1.0)])
+
+
+@pytest.mark.parametrize("world", [jumble, lamp_on_a_ceiling, pool_of_light])
 def test_attributes_average_all_fragments_of_a_voxel(
     stage: MakeStage, world: Callable[[], Scene]
 ) -> None:
-    """Albedo, opacity and normal over all; emitted light over the fragments that emit;
+    """Albedo, opacity and normal over all; emitted light over the fragments that emit, spread over
     the sides of all."""
     jumbled = stage(world(), grid=Grid.fit((vector(-1, -1, -1), vector(1, 1, 1)), 64))
     fragments, pools, grid = jumbled.fragments, Pools.read(jumbled), jumbled.own_grid
@@ -135,8 +149,26 @@ def test_attributes_average_all_fragments_of_a_voxel(
     emitted = rgb9e5_values(fragments["emissive"])
     emits = (emitted.max(axis=1) > 0).astype(float)
     wanted = averages(slots, emitted, emits)
+    glows = emits > 0
+    glowing_sides = united_sides(fragments[glows], slots[glows], met.shape)
+    share = count_bits(glowing_sides) / np.maximum(count_bits(met), 1)
+    wanted *= share.ravel()[np.unique(slots), None]
     got = rgb9e5_values(held["emissive"])
     brightest = emitted.max()
     bound = wanted.max(axis=1, keepdims=True) / 512 + brightest / 65535
     assert (np.abs(got - wanted) <= bound).all()
     assert got.max() > 0.99 * brightest
+
+
+@pytest.mark.parametrize("world", [lamp_on_a_ceiling, pool_of_light])
+def test_leaves_have_the_power_of_what_they_hold(
+    stage: MakeStage, world: Callable[[], Scene]
+) -> None:
+    """Radiance by the sides that show it, a voxel's face each: the lamp's area, once, wherever it
+    shares voxels with what is dark. [docs/gi.md "Bricks"]"""
+    made = stage(world(), grid=Grid.fit((vector(-1, -1, -1), vector(1, 1, 1)), 64))
+    sides = count_bits(sides_met(made)).ravel()
+    held = made.octree.attributes.read(layouts().struct("VoxelAttributes"), sides.size)
+    power = (rgb9e5_values(held["emissive"]) * sides[:, None]).sum(axis=0)
+    area = 0.7**2 / made.own_grid.voxel_m**2
+    np.testing.assert_allclose(power / area, [5.0, 3.0, 1.0], rtol=0.05)
