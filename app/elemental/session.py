@@ -45,6 +45,9 @@ FIXED_EXPOSURE = {"eye_adaptation.min_brightness": 1.0, "eye_adaptation.max_brig
 it. The file's own settings stand over these."""
 NAMES_TOLD = 24
 """How many names a refusal lists: every view, and the cameras of most scenes."""
+EYE_NEAR = 1e-2
+"""Near plane of a camera by --eye, at most, as a part of the way to --target: a small thing in a
+large scene is not cut away [inferred]."""
 
 Point = tuple[float, float, float]
 
@@ -151,22 +154,30 @@ def choose_camera(scene: Scene, viewpoint: Viewpoint, aspect: float) -> Camera:
         camera = named[known_name("--camera", viewpoint.camera, list(named), str(scene.path))]
     if viewpoint.eye is not None or viewpoint.target is not None:
         free = framing_camera(*scene.bounds(), aspect)  # clips by the scene's size, not by a file's
-        world_from_view, fov_y = _look(viewpoint), camera.fov_y
-        camera = replace(free, name="--eye", world_from_view=world_from_view, fov_y=fov_y)
+        world_from_view, distance = _look(viewpoint)
+        camera = replace(
+            free,
+            name="--eye",
+            world_from_view=world_from_view,
+            fov_y=camera.fov_y,
+            near=min(free.near, EYE_NEAR * distance),
+        )
     if viewpoint.fov_deg is not None:
         camera = replace(camera, fov_y=math.radians(viewpoint.fov_deg))
     return camera
 
 
-def _look(viewpoint: Viewpoint) -> transforms.Matrix:
+def _look(viewpoint: Viewpoint) -> tuple[transforms.Matrix, float]:
+    """(world_from_view, metres from the eye to the target)."""
     if viewpoint.camera is not None:
         raise InputError("--eye", "", "not together with --camera")
     if viewpoint.eye is None or viewpoint.target is None:
         raise InputError("--eye", "", "needs --target, and --target needs --eye")
     try:
-        return transforms.inverse(transforms.look_at(viewpoint.eye, viewpoint.target))
+        world_from_view = transforms.inverse(transforms.look_at(viewpoint.eye, viewpoint.target))
     except ValueError:
         raise InputError("--target", "", "is the same point as --eye") from None
+    return world_from_view, math.dist(viewpoint.eye, viewpoint.target)
 
 
 def known_name(flag: str, name: str, names: Sequence[str], file: str = "") -> str:

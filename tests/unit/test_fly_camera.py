@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from elemental.core import transforms
 from elemental.scene.model import Camera
-from elemental.ui.fly_camera import MAX_PITCH, SPEED_RANGE, FlyCamera
+from elemental.ui.fly_camera import DIAGONALS_PER_S, MAX_PITCH, SPEED_RANGE, FlyCamera
 
 
 def camera_at(eye: tuple[float, float, float], target: tuple[float, float, float]) -> Camera:
@@ -37,6 +37,15 @@ def test_it_stands_where_the_camera_stood(
     np.testing.assert_allclose(taken.axes(), fly.axes(), atol=2e-4)
     np.testing.assert_allclose(taken.camera().world_from_view, fly.camera().world_from_view,
                                atol=1e-3)  # fmt: skip
+
+
+def test_who_flies_slowly_sees_what_is_near() -> None:
+    fly = standing()
+    assert fly.camera().near == 0.1
+    fly.scroll(5.0)
+    assert fly.camera().near == 0.1  # flying fast hides nothing
+    fly.scroll(-1e3)
+    assert fly.camera().near == pytest.approx(0.1 * SPEED_RANGE[0] / DIAGONALS_PER_S)
 
 
 @pytest.mark.parametrize("y", [1.0, -1.0])

@@ -13,7 +13,7 @@ from cli.small_scene import corner as corner_gltf
 from cli.small_scene import write_corner
 from elemental.core.errors import InputError
 from elemental.core.images import write_exr
-from elemental.scene.model import Scene
+from elemental.scene.model import Scene, framing_camera
 from elemental.session import (
     Viewpoint,
     check_output,
@@ -158,6 +158,14 @@ def test_a_camera_by_place_looks_there(corner: Scene) -> None:
     assert camera.fov_y == corner.cameras[0].fov_y
     assert camera.near < 0.01  # of a scene of 3.5 m, whatever the file's camera says
     assert camera.far is None
+
+
+def test_a_camera_by_place_sees_small_things_in_large_scenes(corner: Scene) -> None:
+    """A thousandth of the scene, but no more than a hundredth of the way to what it looks at."""
+    far = choose_camera(corner, Viewpoint(eye=(0, 1, 4), target=(0, 0, 0)), 1.5)
+    near = choose_camera(corner, Viewpoint(eye=(0, 0, 0.01), target=(0, 0, 0)), 1.5)
+    assert far.near == framing_camera(*corner.bounds(), 1.5).near
+    assert near.near == pytest.approx(1e-4)
 
 
 @pytest.mark.parametrize(

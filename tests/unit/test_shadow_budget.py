@@ -11,7 +11,13 @@ import pytest
 
 from elemental.passes.light_pack import light_bounds
 from elemental.passes.shadow_budget import HALVINGS, LEAST_SIDE, ShadowBudget, Shares
-from elemental.passes.shadow_fit import ViewFrustum, point_views, spot_view
+from elemental.passes.shadow_fit import (
+    ViewFrustum,
+    cascade_views,
+    open_reach,
+    point_views,
+    spot_view,
+)
 from elemental.passes.shadow_tiles import Tile, TilePool
 from elemental.scene.model import Light
 
@@ -141,6 +147,18 @@ def test_tiles_that_do_not_fit_are_refused() -> None:
         TilePool(1, 64).assign({"a": 64, "b": 8})
     assert TilePool(0, 64).assign({}) == {}
     assert len(TilePool(1, 64).assign(dict.fromkeys(range(64), 8))) == 64
+
+
+def test_cascades_of_a_large_scene_are_fine_where_the_view_is_close() -> None:
+    """A ball seen from 7 m away in a scene of 10 km has a shadow; the scene seen whole, too."""
+    bounds = (np.array([-5e3, 0.0, -5e3], np.float32), np.array([5e3, 2.0, 5e3], np.float32))
+    diagonal = float(np.linalg.norm(bounds[1] - bounds[0]))
+    assert open_reach(bounds, 1e-3 * diagonal) == diagonal
+    eye = np.array([4.0, 2.0, 6.0], np.float32)
+    close = ViewFrustum(eye, FORWARD, 0.07, diagonal, tangent=0.36, corner_tangent=0.7)
+    reach = open_reach(bounds, close.near)
+    views = cascade_views(sun(3.0), bounds, close, count=3, reach=reach, resolution=1024)
+    assert views[0].texel < 0.05
 
 
 def test_lights_far_from_the_origin_have_views() -> None:

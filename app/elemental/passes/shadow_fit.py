@@ -23,6 +23,9 @@ NEAR_OVER_FAR = 2e-3
 """Near plane of a spot or point light's view as a part of its reach [inferred]."""
 DEPTH_BIAS = 2e-6
 """Rounding of a depth computed twice, in units of the depth buffer: some 32 float32 steps at 1."""
+NEARS_REACHED = 4000.0
+"""Where no reach is set, cascades end so many near planes away: four diagonals of a scene that is
+seen whole (`FRAMING_NEAR`), 300 m seen from 7 m away in one of 10 km (`EYE_NEAR`) [inferred]."""
 STABLE_STEPS = 4.0
 """Cascades keep their size until it changes by 2^(1/4), so that a moving camera does not make the
 shadow's edge crawl [inferred]."""
@@ -99,6 +102,12 @@ def cascade_views(
         snapped = np.floor(center / texel) * texel
         views.append(_ortho(view_from_world, snapped, half, corners[:, 2], resolution))
     return views
+
+
+def open_reach(bounds: Bounds, near: float) -> float:
+    """How far in m cascades go where no reach is set: the scene's diagonal, but in a large scene
+    seen from close by only as far as near things keep fine shadows."""
+    return min(float(np.linalg.norm(bounds[1] - bounds[0])), NEARS_REACHED * near)
 
 
 def spot_view(light: Light, bounds: Bounds, resolution: int) -> FittedView:

@@ -26,7 +26,7 @@ CULLED_FROM = 5
 @dataclass(frozen=True)
 class ShadowSettings:
     """resolution: texels a side of each map; cascades: most of them for a directional light;
-    reach: how far they go from the camera in m, 0 = the scene's diagonal; budget: maps that all
+    reach: how far they go from the camera in m, 0 = `open_reach`; budget: maps that all
     lights share; penumbras: a light's size softens its shadows. culling: many lights are culled,
     those without a range at `cutoff` lux."""
 
@@ -242,13 +242,12 @@ def _cascades(
     light: Light, bounds: Bounds, frustum: ViewFrustum, settings: ShadowSettings, coarsest: float
 ) -> list[FittedView]:
     """Those with smaller texels than `coarsest`, the whole scene's: others show no more."""
-    diagonal = float(np.linalg.norm(bounds[1] - bounds[0]))
     views = shadow_fit.cascade_views(
         light,
         bounds,
         frustum,
         count=settings.cascades,
-        reach=settings.reach or diagonal,
+        reach=settings.reach or shadow_fit.open_reach(bounds, frustum.near),
         resolution=settings.resolution,
     )
     return [view for view in views if view.texel < coarsest]

@@ -119,7 +119,7 @@ TABLE = (
     ),
     Setting(
         "shadow.distance", "float", 0.0,
-        "reach of directional shadows from the camera; 0 takes the scene's size",
+        "reach of fine directional shadows from the camera; 0 goes by the scene and the view",
         unit="m", lo=0, hi=100000,
     ),
     Setting("voxels.level", "int", 0,

@@ -22,7 +22,7 @@ DIAGONALS_PER_S = 0.1
 SPEED_RANGE = (1e-4, 10.0)
 """Slowest and fastest speed in scene diagonals a second."""
 FAST_FACTOR = 4.0
-"""Shift multiplies the speed by this, Ctrl divides by it."""
+"""Shift multiplies the speed by this, Alt divides by it."""
 
 
 @dataclass
@@ -91,7 +91,16 @@ class FlyCamera:
         return np.stack([right, np.cross(right, forward), forward])
 
     def camera(self) -> Camera:
-        """The lens at this place and direction; its image takes the window's aspect."""
+        """The lens at this place and direction; its image takes the window's aspect.
+
+        Who flies slower than at first looks at small things: the near plane comes closer, too.
+        """
         eye = self.position
         view_from_world = transforms.look_at(eye, eye + self.axes()[2])
-        return replace(self.lens, world_from_view=transforms.inverse(view_from_world), aspect=None)
+        slowness = min(self.speed / (DIAGONALS_PER_S * self.diagonal), 1.0)
+        return replace(
+            self.lens,
+            world_from_view=transforms.inverse(view_from_world),
+            near=slowness * self.lens.near,
+            aspect=None,
+        )
