@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from elemental.gpu import gl as c
 from elemental.gpu.binding import BlockLook, ImageLook, Look, SamplerLook
 from elemental.gpu.refs import SamplerKey, sampler_parameters
+
+if TYPE_CHECKING:
+    from elemental.gpu.passes import Placed
 
 Binding = tuple[int, Callable[..., None], tuple[Any, ...]]
 """(place, how to bind, with what): nothing is to be done where the place has the same already."""
@@ -66,12 +69,14 @@ class Binder:
                 held[place] = arguments
                 bind(*arguments)
 
-    def bind_params(self, unit: int, glo: int, offset: int, size: int) -> None:
-        """Bind a range of the parameter ring to a uniform block."""
-        place, arguments = _UNIFORM + unit, (c.UNIFORM_BUFFER, unit, glo, offset, size)
-        if self._held[place] != arguments:
-            self._held[place] = arguments
-            self.gl.glBindBufferRange(*arguments)
+    def bind_params(self, params: Sequence[Placed], glo: int, base: int) -> None:
+        """Bind uniform blocks that lie in buffer ``glo`` from byte ``base`` on."""
+        held = self._held
+        for unit, offset, size in params:
+            place, arguments = _UNIFORM + unit, (c.UNIFORM_BUFFER, unit, glo, base + offset, size)
+            if held[place] != arguments:
+                held[place] = arguments
+                self.gl.glBindBufferRange(*arguments)
 
     def _texture(self, unit: int, target: int, glo: int) -> None:
         if self._active_unit != unit:

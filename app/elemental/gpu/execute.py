@@ -174,11 +174,8 @@ class Executor:
             self.gl.glMemoryBarrier(bits)
 
     def _bind_pass(self, node: Any) -> None:
-        binder = self.binder
-        binder.bind(node.bound.bindings)
-        glo, base = self._params
-        for unit, offset, size in node.params:
-            binder.bind_params(unit, glo, base + offset, size)
+        self.binder.bind(node.bound.bindings)
+        self.binder.bind_params(node.params, *self._params)
 
     # Kinds of passes ---------------------------------------------------------------------------
 

@@ -92,5 +92,7 @@ def _inside(matrices: Array, center: Array, half: Array) -> Array:
     m = matrices.astype(np.float64)
     planes = np.concatenate([m[:, 3:] + m[:, :3], m[:, 3:] - m[:, :3]], axis=1).reshape(-1, 4)
     normals = planes[:, :3]
-    nearest = normals @ center.T + np.abs(normals) @ half.T + planes[:, 3:]  # (6 V, N)
+    nearest = normals @ center.T  # (6 V, N)
+    nearest += np.abs(normals) @ half.T
+    nearest += planes[:, 3:]
     return np.asarray((nearest >= 0.0).reshape(len(m), 6, len(center)).all(axis=1))

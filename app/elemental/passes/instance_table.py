@@ -83,7 +83,9 @@ class InstanceTable:
         numbers = pose.instances
         moved = (pose.world_from_local != self._world[numbers]).any(axis=(1, 2)) & pose.visible
         shown = pose.visible != self.visible[numbers]
-        changed = moved | shown | np.isin(numbers, list(bent)) & pose.visible
+        changed = moved | shown
+        if bent:
+            changed |= np.isin(numbers, list(bent)) & pose.visible
         resting = self._come_to_rest(numbers)
         changes: list[Change] = []
         if changed.any():

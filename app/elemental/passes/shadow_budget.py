@@ -88,18 +88,14 @@ class ShadowBudget:
     def _halve(self, levels: Array, faces: Array, room: int) -> Array:
         """(L,) how often the side of each light's maps is halved: the fewest that the room allows,
         the same for all lights on one level."""
-
-        def halved(shift: int) -> Array:
-            return np.asarray(np.clip(levels + shift, 0, self._most))
-
-        lowest = -int(levels.max(initial=0))
-        for shift in range(lowest, self._most + 1):
-            area = _area(halved(shift), faces)
-            fits = area <= (room if shift >= self._shift else ROOM_MARGIN * room)
-            if fits or shift == self._most:
-                self._shift = shift
-                break
-        return halved(self._shift)
+        shifts = np.arange(-int(levels.max(initial=0)), self._most + 1)
+        halvings = np.clip(levels + shifts[:, None], 0, self._most)
+        margin = np.where(shifts >= self._shift, 1.0, ROOM_MARGIN)
+        fits = _areas(halvings, faces).sum(axis=1) <= margin * room
+        fits[-1] = True
+        first = int(fits.argmax())
+        self._shift = int(shifts[first])
+        return np.asarray(halvings[first])
 
 
 def reaches_of_picture(spheres: Array, frustum: ViewFrustum) -> Array:
@@ -119,15 +115,15 @@ def _strength(light: Light) -> float:
     return float(light.strength.max())
 
 
-def _area(halvings: Array, faces: Array) -> float:
-    """In maps of the full size."""
-    return float((faces / 4.0**halvings).sum())
+def _areas(halvings: Array, faces: Array) -> Array:
+    """Of each light's maps, in maps of the full size."""
+    return np.asarray(faces / 4.0**halvings)
 
 
 def _fitting(halvings: Array, levels: Array, faces: Array, room: int) -> Array:
     """(L,) bool: those that fit, on the lowest levels first, then by number."""
     order = np.lexsort((np.arange(len(levels)), levels))
-    area = np.cumsum((faces / 4.0**halvings)[order])
+    area = np.cumsum(_areas(halvings, faces)[order])
     fits = np.zeros(len(levels), np.bool_)
     fits[order[area <= room]] = True
     return fits
