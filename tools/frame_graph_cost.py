@@ -5,7 +5,7 @@
 
 Each pass is of middling size: three samplers, a storage buffer, an image, two uniform blocks.
 "without the driver" replaces every GL call by an empty function, so it is the Python alone (the
-budget is 20 µs); "with" adds the driver's share, on dispatches of no groups.
+budget is 10 µs); "with" adds the driver's share, on dispatches of no groups.
 """
 
 from __future__ import annotations
