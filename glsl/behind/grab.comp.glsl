@@ -1,5 +1,5 @@
-// What translucent surfaces see behind them: radiance, and 1 / distance from the eye's plane, 0 where
-// nothing is; both may be averaged.
+// What translucent surfaces see behind them: radiance, and 1 / distance from the eye's plane, 0
+// where nothing is; both may be averaged.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "lib/finite.glsl"

@@ -1,4 +1,5 @@
-// Half as large, through the tent 1 3 3 1: four bilinear lookups at the corners between four texels.
+// Half as large, through the tent 1 3 3 1: four bilinear lookups at the corners between four
+// texels.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 uniform sampler2D u_finer;  // linear filter

@@ -1,5 +1,6 @@
-// Four levels of the farthest depths, each texel over 2x2 of the level below: of the depth buffer, or
-// with LEVEL = 4 of the pyramid's fourth level. What lies past the source's size counts as nearest.
+// Four levels of the farthest depths, each texel over 2x2 of the level below: of the depth buffer,
+// or with LEVEL = 4 of the pyramid's fourth level. What lies past the source's size counts as
+// nearest.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "shared/depth_pyramid.glsl"

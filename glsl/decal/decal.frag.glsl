@@ -22,8 +22,8 @@ layout(location = 2) out vec4 o_b;
 layout(location = 3) out vec4 o_c;
 layout(location = 4) out vec4 o_d;
 
-// The change of texture coordinates from pixel to pixel, by the receiver's tangent plane: differences
-// between neighbours would reach across the edges of what lies in the box.
+// The change of texture coordinates from pixel to pixel, by the receiver's tangent plane:
+// differences between neighbours would reach across the edges of what lies in the box.
 void set_uv_steps(vec2 uv, vec3 p_ws, vec3 normal_ws, mat3 decal_from_world) {
     vec2 clip = uv * 2.0 - 1.0;
     mat3 world_from_view = mat3(u_view.world_from_view);

@@ -1,6 +1,6 @@
-// Colours the fragment queue as decals colour the G-buffer, so that bounced light knows of them. One
-// material of one order a pass; a fragment looks through the decals of its cell. MOVING=1: only the
-// fragments behind those of what never moves.
+// Colours the fragment queue as decals colour the G-buffer, so that bounced light knows of them.
+// One material of one order a pass; a fragment looks through the decals of its cell. MOVING=1: only
+// the fragments behind those of what never moves.
 #define dFdx(x) (0.0 * (x))  // derivatives over pixels, which artists' code may use, are of no use here
 #define dFdy(x) (0.0 * (x))
 #define fwidth(x) (0.0 * (x))

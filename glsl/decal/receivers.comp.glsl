@@ -1,5 +1,5 @@
-// What decals ask of the G-buffer while they are blended into it. Its depth too: that is attached then,
-// and GL 4.3 leaves undefined what is read of an attached texture.
+// What decals ask of the G-buffer while they are blended into it. Its depth too: that is attached
+// then, and GL 4.3 leaves undefined what is read of an attached texture.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "lib/decal.glsl"

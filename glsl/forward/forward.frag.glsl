@@ -1,6 +1,6 @@
 // One translucent surface, lit like the opaque ones and by cones of its own, over what is behind it
-// (premultiplied). What passes through glass is bent, tinted and blurred. [Mittring12 "GBuffer": one
-// forward pass]
+// (premultiplied). What passes through glass is bent, tinted and blurred. [Mittring12 "GBuffer":
+// one forward pass]
 #ifndef GI
 #define GI 1
 #endif
@@ -65,7 +65,8 @@ struct Transmission {
 };
 
 // mirrored: share of one face. Of a pane both faces mirror what the eye sees in the first one; what
-// the far side of a ball mirrors goes elsewhere, and what it loses there arrives from elsewhere, too.
+// the far side of a ball mirrors goes elsewhere, and what it loses there arrives from elsewhere,
+// too.
 Transmission transmission_of(Surface s, ShadingPoint p, float radius_m) {
     float thickness_m = gl_FrontFacing ? s.thickness * v_scale : 0.0;
     float roundness = roundness_of(thickness_m, radius_m);

@@ -1,5 +1,5 @@
-// Smart blur of normal and ambient occlusion over five pixels, and the specular power that the spread
-// of the normals asks for. Depth and AO come in two gathers, which hold the cross of five.
+// Smart blur of normal and ambient occlusion over five pixels, and the specular power that the
+// spread of the normals asks for. Depth and AO come in two gathers, which hold the cross of five.
 // [Mittring12 "G-buffer Blur"]
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -28,7 +28,8 @@ void main() {
     vec4 a = texelFetch(u_gbuffer_a, pixel, 0);
     vec4 b = texelFetch(u_gbuffer_b, pixel, 0);
     vec4 d = texelFetch(u_gbuffer_d, pixel, 0);
-    // A gather at a pixel's corner holds, from its x on: upper left, upper right, lower right, lower left.
+    // A gather at a pixel's corner holds, from its x on: upper left, upper right, lower right,
+    // lower left.
     vec2 low = vec2(pixel) * u_view.viewport_px.zw;
     vec2 high = vec2(pixel + 1) * u_view.viewport_px.zw;
     vec4 low_depth = textureGather(u_depth, low);

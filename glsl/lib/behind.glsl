@@ -39,16 +39,17 @@ float end_in_picture(vec2 from, vec2 to) {
     return clamp(min(ends.x, ends.y), 0.0, 1.0);
 }
 
-// Whether a ray at a place of the picture has met the surface there: it is behind it, by no more than a
-// share `gap` of its depth and `step_m`. Farther behind it passes behind something.
+// Whether a ray at a place of the picture has met the surface there: it is behind it, by no more
+// than a share `gap` of its depth and `step_m`. Farther behind it passes behind something.
 bool meets_picture(vec3 place, float gap, float step_m) {
     float inverse = inverse_depth_behind(place.xy);
     if (inverse < place.z) return false;
     return 1.0 / place.z - 1.0 / inverse <= gap / place.z + step_m;
 }
 
-// A guess at what a ray meets out of sight, behind what begins after a place of the picture: what is seen
-// there, blurred over the step that passed it. [inferred: floors and walls go on behind what stands there]
+// A guess at what a ray meets out of sight, behind what begins after a place of the picture: what
+// is seen there, blurred over the step that passed it. [inferred: floors and walls go on behind
+// what stands there]
 vec4 guess_behind(vec2 uv, float step_px) {
     return vec4(textureLod(u_behind, uv, log2(max(step_px, 1.0))).rgb, BEHIND_GUESS);
 }

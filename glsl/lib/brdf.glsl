@@ -56,7 +56,8 @@ float gaussian_specular_lobe(vec3 n, vec3 h, float n_o_l, float lobe_angle) {
 }
 
 // Normalized specular reflection of one light, times the cosine: multiply with the specular colour
-// and the irradiance at normal incidence. [Mittring12 "Soft Sphere Area Light", "Energy conserving"]
+// and the irradiance at normal incidence. [Mittring12 "Soft Sphere Area Light", "Energy
+// conserving"]
 float gaussian_specular(vec3 n, vec3 h, float n_o_l, float power, float area_angle) {
     float lobe_angle = specular_lobe_angle(power) + area_angle;
     return gaussian_specular_lobe(n, h, n_o_l, lobe_angle) / (lobe_angle * lobe_angle * 10.0);
@@ -77,12 +78,12 @@ vec3 fresnel_schlick(vec3 specular_color, float v_o_h) {
     return specular_color + (1.0 - specular_color) * (squared * squared * x);
 }
 
-// Share of a uniform environment that a GGX surface mirrors into the direction of cosine n_o_v, with
-// height-correlated Smith shadowing: specular_color * (1 - loss - grazing) + grazing, the split of
-// [Karis13 "Environment BRDF"]. loss and grazing are exponentials of cubics in roughness and
-// sqrt(n_o_v), fitted by least squares to the integral over 33x33 directions and roughnesses: mean
-// error 0.006 and 0.002, largest 0.05 and 0.03. [Karis14]'s shorter fit, made for another shadowing
-// term, is 0.03 off in the mean and 0.15 at most.
+// Share of a uniform environment that a GGX surface mirrors into the direction of cosine n_o_v,
+// with height-correlated Smith shadowing: specular_color * (1 - loss - grazing) + grazing, the
+// split of [Karis13 "Environment BRDF"]. loss and grazing are exponentials of cubics in roughness
+// and sqrt(n_o_v), fitted by least squares to the integral over 33x33 directions and roughnesses:
+// mean error 0.006 and 0.002, largest 0.05 and 0.03. [Karis14]'s shorter fit, made for another
+// shadowing term, is 0.03 off in the mean and 0.15 at most.
 vec3 environment_brdf(vec3 specular_color, float roughness, float n_o_v) {
     float r = roughness;
     float s = sqrt(n_o_v);
@@ -94,8 +95,8 @@ vec3 environment_brdf(vec3 specular_color, float roughness, float n_o_v) {
 }
 
 // Share of all light from a hemisphere that such a surface mirrors: the mean of environment_brdf by
-// cosine. loss and grazing are polynomials fitted to the integrals of the above: at most 0.007 and 0.004
-// off.
+// cosine. loss and grazing are polynomials fitted to the integrals of the above: at most 0.007 and
+// 0.004 off.
 vec3 mirrored_share(vec3 specular_color, float roughness) {
     float r = roughness;
     float grazing = max(0.0482 + r * (0.0063 + r * (-0.1961 + 0.1479 * r)), 0.0);

@@ -15,7 +15,8 @@ uint scale_code(float x) {
 // meanwhile.
 layout(std430) buffer ScaledNodes { Node scaled_nodes[]; };
 
-// Notes the multiplier of a brick whose largest value is `maximum` in its node; returns its inverse.
+// Notes the multiplier of a brick whose largest value is `maximum` in its node; returns its
+// inverse.
 float store_multiplier(uint brick, float maximum) {
     uint code = scale_code(maximum);
     scaled_nodes[bricks[brick].node & BRICK_NODE_MASK].brick = (brick + 1u) | (code << NODE_SCALE_SHIFT);

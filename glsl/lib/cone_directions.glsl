@@ -2,9 +2,9 @@
 // [Mittring12 "Diffuse Sampling 2/2": 9 well distributed cones in world space]
 //
 // A cone wide enough to be one of nine sees the walls of the room that it crosses, so each can be
-// traced as CONE_SPLIT narrower ones beside each other. The weights c (1 + s c), c = n . d, normalized,
-// give the cosine-weighted mean of any environment of spherical harmonics order 2; the sets
-// have small errors of that over all normals, and beside walls (tools/cone_directions.py):
+// traced as CONE_SPLIT narrower ones beside each other. The weights c (1 + s c), c = n . d,
+// normalized, give the cosine-weighted mean of any environment of spherical harmonics order 2; the
+// sets have small errors of that over all normals, and beside walls (tools/cone_directions.py):
 //
 //   cones  s     rms    worst
 //       9  0.60  6.7 %  11.1 %

@@ -1,4 +1,5 @@
-// How many samples a cone takes, as false colours. To be included before lib/cone.glsl, which counts.
+// How many samples a cone takes, as false colours. To be included before lib/cone.glsl, which
+// counts.
 #define COUNT_CONE_STEPS 1
 
 #include "lib/false_color.glsl"

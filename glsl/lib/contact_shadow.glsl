@@ -1,9 +1,9 @@
 // Points that touch what may shade them. Included by lib/shadow.glsl.
 //
-// At the foot of a wall the filter's taps meet the wall nearer to the light on one side of the point's
-// own ray, and farther on the other: a line of light along the joint behind the wall, and a line of shade
-// before it, as wide as the filter. The four texels around the ray tell the wall's plane, and that where
-// the ray meets it, to the precision of the map. [inferred]
+// At the foot of a wall the filter's taps meet the wall nearer to the light on one side of the
+// point's own ray, and farther on the other: a line of light along the joint behind the wall, and a
+// line of shade before it, as wide as the filter. The four texels around the ray tell the wall's
+// plane, and that where the ray meets it, to the precision of the map. [inferred]
 
 // Depths themselves, in the maps that u_shadow_maps compares.
 uniform sampler2DArray u_shadow_depths;
@@ -12,8 +12,8 @@ uniform sampler2DArray u_shadow_depths;
 const float PLANE_TWIST = 0.25;
 // Tangent of a plane's angle to the light at most; what is steeper is a step between two surfaces.
 const float STEEPEST = 6.0;
-// Of a depth's change over a texel: so near to a plane a point counts as behind it. Where sheets meet
-// both have the same depth but for its rounding.
+// Of a depth's change over a texel: so near to a plane a point counts as behind it. Where sheets
+// meet both have the same depth but for its rounding.
 const float ROUNDING = 0.05;
 const float AWAY_TEXELS = 1.0;
 const float NO_CONTACT = -1.0;
@@ -25,9 +25,9 @@ float metres_of_depth(vec2 range_m, vec3 w_gradient, float w) {
     return dot(w_gradient, w_gradient) > 0.0 ? range * w * w / (range_m.x * range_m.y) : range;
 }
 
-// Visibility of the light, 0 or 1, of a point that a plane lies before or behind, by no more than its
-// slope makes of the filter's radius; else NO_CONTACT. away: off the point's own surface as the light
-// sees it, where the plane is looked for, clear of its foot.
+// Visibility of the light, 0 or 1, of a point that a plane lies before or behind, by no more than
+// its slope makes of the filter's radius; else NO_CONTACT. away: off the point's own surface as the
+// light sees it, where the plane is looked for, clear of its foot.
 float contact_visibility(uint view, vec2 uv, vec2 away, float depth, float w) {
     float size = float(textureSize(u_shadow_depths, 0).x);
     vec2 place_px = (shadow_views[view].offset_uv + uv * shadow_views[view].scale) * size;

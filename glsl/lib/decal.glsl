@@ -27,8 +27,8 @@ float decal_fade(vec3 normal_ws, vec3 z_ws, float fade_end, float fade_scale) {
     return clamp((dot(normal_ws, z_ws) - fade_end) * fade_scale, 0.0, 1.0);
 }
 
-// Share of a square face, `side` m wide around p, that a decal of this size (m) around 0 covers: what
-// all faces of a lattice add up to is the decal's area.
+// Share of a square face, `side` m wide around p, that a decal of this size (m) around 0 covers:
+// what all faces of a lattice add up to is the decal's area.
 float decal_cover(vec2 p, vec2 size, float side) {
     vec2 high = min(p + 0.5 * side, 0.5 * size);
     vec2 low = max(p - 0.5 * side, -0.5 * size);
@@ -36,8 +36,8 @@ float decal_cover(vec2 p, vec2 size, float side) {
     return covered.x * covered.y;
 }
 
-// How a point of the plane through p (relative to the eye), seen along ray, moves as the ray turns by
-// ray_step. Near the plane's horizon the step is held within half and double the distance.
+// How a point of the plane through p (relative to the eye), seen along ray, moves as the ray turns
+// by ray_step. Near the plane's horizon the step is held within half and double the distance.
 vec3 step_in_plane(vec3 p, vec3 normal, vec3 ray, vec3 ray_step) {
     float here = dot(normal, ray);
     float there = dot(normal, ray + ray_step);

@@ -15,8 +15,8 @@ const uint MAX_WORK_GROUPS = 65535u;
         + gl_LocalInvocationIndex)
 
 // For the producer of a list that a later indirect dispatch goes over: makes the dispatch's x and y
-// reach item `at`. The slide's InterlockedMax, which saves a pass; its (at + 63) / 64 misses the first
-// item of each group. [Mittring12 "Specular Sampling 2/2"]
+// reach item `at`. The slide's InterlockedMax, which saves a pass; its (at + 63) / 64 misses the
+// first item of each group. [Mittring12 "Specular Sampling 2/2"]
 const uint DISPATCH_ROW = 32768u;
 #define reach_item(args_x, args_y, at, group_size) \
     atomicMax(args_x, min((at) / (group_size), DISPATCH_ROW - 1u) + 1u); \

@@ -1,5 +1,5 @@
-// The queue of fragments, for passes of a thread a fragment. MOVING=1: only the fragments behind those
-// of what never moves.
+// The queue of fragments, for passes of a thread a fragment. MOVING=1: only the fragments behind
+// those of what never moves.
 
 #include "lib/dispatch.glsl"
 #include "shared/octree.glsl"

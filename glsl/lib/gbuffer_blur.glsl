@@ -1,7 +1,7 @@
 // The G-buffer blur's weights and what it makes of specular power. [Mittring12 "G-buffer Blur"]
 
-// Pixels' widths from the centre's tangent plane at which a neighbour is of another surface. Bumps of
-// 45 degrees keep neighbours within one [inferred].
+// Pixels' widths from the centre's tangent plane at which a neighbour is of another surface. Bumps
+// of 45 degrees keep neighbours within one [inferred].
 const float BLUR_PLANE_TOLERANCE = 4.0;
 
 // Weighted by normal: the squared cosine leaves the sides of an edge apart, yet lets the bumps of a

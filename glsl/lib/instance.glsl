@@ -1,4 +1,5 @@
-// The buffer Instances as vertex shaders see it: drivers of GL 4.3 may have no storage blocks there.
+// The buffer Instances as vertex shaders see it: drivers of GL 4.3 may have no storage blocks
+// there.
 #include "lib/texels.glsl"
 #include "shared/instance.glsl"
 

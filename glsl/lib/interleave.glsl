@@ -31,8 +31,8 @@ InterleavedPixel interleaved_pixel(uvec3 thread, ivec2 size) {
     return InterleavedPixel(pixel, cone, at + part * cone_offset(cone), inside);
 }
 
-// The same where four parts are dealt out: a dispatch over (x, y) of a quarter of a sub-image and the
-// nine by four, so that neighbouring threads still walk the same way.
+// The same where four parts are dealt out: a dispatch over (x, y) of a quarter of a sub-image and
+// the nine by four, so that neighbouring threads still walk the same way.
 InterleavedPixel interleaved_part(uvec3 thread, ivec2 size, out int part) {
     part = int(thread.z) & 3;
     uvec2 at = thread.xy * 2u + uvec2(part_offset(part));

@@ -4,8 +4,8 @@
 
 // Node blocks with their sums and slots, as the last build left them.
 layout(std430) readonly buffer OldBlocks { uint old_blocks[]; };
-// For each block, and then for each group of blocks, bricks and tiles before it that were there in the
-// last build and are in this: as the sums of node blocks.
+// For each block, and then for each group of blocks, bricks and tiles before it that were there in
+// the last build and are in this: as the sums of node blocks.
 #ifndef KEPT_SUMS_ACCESS
 #define KEPT_SUMS_ACCESS readonly
 #endif

@@ -1,7 +1,7 @@
 // Which of the lights may reach a point. Shaders go over them by
 //     for (LightWalk walk = first_light(p_ws); walk.light < light_count(); next_light(walk)) ...
-// in the order of their numbers. LIGHT_CELLS says among which; with VIEW_CELLS shared/view.glsl comes
-// first.
+// in the order of their numbers. LIGHT_CELLS says among which; with VIEW_CELLS shared/view.glsl
+// comes first.
 #include "shared/light.glsl"
 #include "shared/light_cell_kinds.glsl"
 

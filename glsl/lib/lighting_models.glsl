@@ -2,8 +2,8 @@
 // light through a surface, cloth, and the share of light that is left for diffuse reflection. Pure
 // functions; every direction is unit. [Mittring12 "Shading"]
 //
-// LIGHTING_MODELS is the mask of the models (1 << LIGHTING_*) that there may be; the code of the others
-// is left out.
+// LIGHTING_MODELS is the mask of the models (1 << LIGHTING_*) that there may be; the code of the
+// others is left out.
 #include "shared/gbuffer.glsl"
 #include "lib/brdf.glsl"
 

@@ -2,8 +2,8 @@
 #include "lib/math.glsl"
 #include "shared/light.glsl"
 
-// Profiles: intensity over the peak; columns go round the axis, rows from the way the light points to its
-// back. Masks: the share of each primary, as pictures, the first row on top. All repeat.
+// Profiles: intensity over the peak; columns go round the axis, rows from the way the light points
+// to its back. Masks: the share of each primary, as pictures, the first row on top. All repeat.
 uniform sampler2DArray u_light_shapes;
 
 struct LightSample {

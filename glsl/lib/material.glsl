@@ -1,10 +1,10 @@
 // evaluate_material: what a material says about a surface point, in the talk's terms. Used by every
 // pass that draws meshes. [Mittring12 "Voxel Lighting Pipeline": artist defined material]
 //
-// A description with snippets={"material": ...} puts the artist's code where <material> is included;
-// without one the material is glTF's. MATERIAL_TEXTURES is the mask of the glTF slots (1 << SLOT_*)
-// that may have a texture; the fetches of the others are left out. MATERIAL_FAULTS 1: a surface that
-// is no number is shown as the fallback, and told in the buffer MaterialFaults.
+// A description with snippets={"material": ...} puts the artist's code where <material> is
+// included; without one the material is glTF's. MATERIAL_TEXTURES is the mask of the glTF slots (1
+// << SLOT_*) that may have a texture; the fetches of the others are left out. MATERIAL_FAULTS 1: a
+// surface that is no number is shown as the fallback, and told in the buffer MaterialFaults.
 #include "shared/material.glsl"
 #include "lib/finite.glsl"
 #include "lib/refraction.glsl"

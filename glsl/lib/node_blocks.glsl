@@ -1,5 +1,5 @@
-// The nodes' bits, and with each block of 64 how many bricks and tiles stand before it: what a build
-// leaves behind so that a cell's brick is found without a descent.
+// The nodes' bits, and with each block of 64 how many bricks and tiles stand before it: what a
+// build leaves behind so that a cell's brick is found without a descent.
 
 #include "lib/node_bits.glsl"
 

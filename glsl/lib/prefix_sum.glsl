@@ -1,4 +1,5 @@
-// Prefix sum of a pair over a work group of SCAN_GROUP threads. [Hillis86 "Data Parallel Algorithms"]
+// Prefix sum of a pair over a work group of SCAN_GROUP threads. [Hillis86 "Data Parallel
+// Algorithms"]
 
 #include "shared/scan.glsl"
 

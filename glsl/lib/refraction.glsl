@@ -1,6 +1,6 @@
 // Light that passes through a body of glass: where a ray leaves it, what is absorbed, how far it
-// scatters. [KHR_materials_transmission], [KHR_materials_volume]; the shape behind the surface is not
-// known to a forward pass, so it is taken from the curvature in front. [inferred]
+// scatters. [KHR_materials_transmission], [KHR_materials_volume]; the shape behind the surface is
+// not known to a forward pass, so it is taken from the curvature in front. [inferred]
 
 // Reflectance at normal incidence between air and a dielectric.
 float reflectance_of_ior(float ior) {
@@ -13,8 +13,8 @@ vec3 absorption_of(vec3 color, float distance_m) {
     return distance_m > 0.0 ? -log(max(color, 1e-4)) / distance_m : vec3(0.0);
 }
 
-// The normal where a ray inside leaves, outwards. roundness 1: of a ball, whose normal turns about the
-// chord as it did in front; 0: of a pane.
+// The normal where a ray inside leaves, outwards. roundness 1: of a ball, whose normal turns about
+// the chord as it did in front; 0: of a pane.
 vec3 exit_normal(vec3 normal, vec3 inside, float roundness) {
     return normalize(mix(-normal, reflect(normal, inside), roundness));
 }
@@ -25,8 +25,8 @@ struct RefractedRay {
     float path_m;     // inside
 };
 
-// A ray that meets a body of this thickness (m, of a ball its diameter). Thin walls, of thickness 0,
-// do not bend light.
+// A ray that meets a body of this thickness (m, of a ball its diameter). Thin walls, of thickness
+// 0, do not bend light.
 RefractedRay refract_through(vec3 p_ws, vec3 direction, vec3 normal, float ior, float thickness_m,
                              float roundness) {
     if (thickness_m <= 0.0) return RefractedRay(p_ws, direction, 0.0);
@@ -63,8 +63,8 @@ PaneShares pane_shares(vec3 reflectance, vec3 kept) {
 }
 
 // Half angle of the cone into which a rough surface scatters what passes, by the mirrored lobe's: a
-// facet that turns by h turns a mirrored ray by 2 h, one that enters and leaves by (ior - 1) h at each
-// of the two surfaces, independently. [inferred]
+// facet that turns by h turns a mirrored ray by 2 h, one that enters and leaves by (ior - 1) h at
+// each of the two surfaces, independently. [inferred]
 float refracted_half_angle(float mirrored_half_angle, float ior) {
     return mirrored_half_angle * 0.5 * abs(ior - 1.0) * 1.41421356;
 }

@@ -1,5 +1,5 @@
-// Whether a neighbouring pixel lies on the same surface. [Mittring12 "Diffuse Sampling 2/2": weight by
-// normal and depth]
+// Whether a neighbouring pixel lies on the same surface. [Mittring12 "Diffuse Sampling 2/2": weight
+// by normal and depth]
 
 // A neighbour counts while its distance from the pixel's tangent plane is below this share of its
 // distance from the eye.

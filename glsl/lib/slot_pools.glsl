@@ -16,8 +16,8 @@ int brick_pool(int level) {
     return level >= u_octree.leaf_level ? 2 : level >= u_octree.coarsest_leaf ? 1 : 0;
 }
 
-// A pool's share of a block: what is there now and was before, a bit each, and how many stand before
-// the block.
+// A pool's share of a block: what is there now and was before, a bit each, and how many stand
+// before the block.
 struct SlotsOfBlock {
     int pool;
     uvec2 bits;

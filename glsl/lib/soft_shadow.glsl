@@ -3,8 +3,9 @@
 //
 // Samples lie on the plane of the surface that is shaded, spread over a disc as the light sees it:
 // each is compared at its own depth, so that no slope needs a bias, and looked up in the view that
-// sees it, so that a point light's faces have no seams. The discs are not turned from pixel to pixel:
-// a sunflower's points lie apart along every direction, so that edges neither band nor grain.
+// sees it, so that a point light's faces have no seams. The discs are not turned from pixel to
+// pixel: a sunflower's points lie apart along every direction, so that edges neither band nor
+// grain.
 
 #if !CONTACT_SHADOWS
 // Depths themselves, in the maps that u_shadow_maps compares.
@@ -19,11 +20,13 @@ const float SOFT_TEXELS = 1.5;
 const float NEAREST_BLOCKER = 0.5;
 // m, how far from a surface blockers of a directional light are looked for [inferred]
 const float SUN_BLOCKER_REACH = 10.0;
-// Of a local light's height over a surface's plane: what the discs reach of it at most. Rays meet the
-// plane no farther away than twice the point, where texels are twice as wide: the lift clears them.
+// Of a local light's height over a surface's plane: what the discs reach of it at most. Rays meet
+// the plane no farther away than twice the point, where texels are twice as wide: the lift clears
+// them.
 const float DISC_OF_HEIGHT = 0.5;
-// Of the distance to a local light: what the discs reach of it at most. Beyond it what blocks light in
-// one part of the disc says little of the rest, and thin things fall between the samples. [inferred]
+// Of the distance to a local light: what the discs reach of it at most. Beyond it what blocks light
+// in one part of the disc says little of the rest, and thin things fall between the samples.
+// [inferred]
 const float DISC_OF_DISTANCE = 0.2;
 const float GOLDEN_ANGLE = 2.39996323;
 
@@ -84,7 +87,8 @@ float penumbra_growth(Light light, ShadowTap tap, float blocker_depth) {
     return (tap.w - blocker_w) / blocker_w;
 }
 
-// Visibility 0..1 of a light of a size from a point with the surface normal n_ws; view: that sees it.
+// Visibility 0..1 of a light of a size from a point with the surface normal n_ws; view: that sees
+// it.
 float soft_visibility(Light light, uint view, vec3 p_ws, vec3 n_ws, vec3 to_light) {
     float cosine = dot(n_ws, to_light);
     float sine = sqrt(clamp(1.0 - cosine * cosine, 0.0, 1.0));

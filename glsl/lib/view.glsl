@@ -23,7 +23,8 @@ vec4 linear_depths(vec4 depths) {
     return u_view.near * u_view.far / (u_view.far - depths * (u_view.far - u_view.near));
 }
 
-// x, y of the view-space ray of depth 1 through clip (1, 1): the tangents of half the field of view.
+// x, y of the view-space ray of depth 1 through clip (1, 1): the tangents of half the field of
+// view.
 vec2 view_ray() {
     mat4 m = u_view.clip_from_world;
     vec3 row_x = vec3(m[0].x, m[1].x, m[2].x);

@@ -1,5 +1,5 @@
-// A voxel's HDR values, wherever they are kept: leaves derive theirs from radiance and
-// normal, the other levels keep filtered ones. [Mittring12 "Generate directionally dependent voxel"]
+// A voxel's HDR values, wherever they are kept: leaves derive theirs from radiance and normal, the
+// other levels keep filtered ones. [Mittring12 "Generate directionally dependent voxel"]
 
 #include "lib/lattice.glsl"
 #include "lib/ambient_cube.glsl"
@@ -10,8 +10,8 @@ layout(std430) readonly buffer State { OctreeState octree_state; };
 layout(std430) readonly buffer Attributes { VoxelAttributes attributes[]; };
 layout(std430) readonly buffer Radiance { uint radiance[]; };  // RGB9E5
 
-// What viewers on both sides along each axis see: a, the share of a voxel's face that fronts of surfaces
-// cover; rgb, their radiance times that share.
+// What viewers on both sides along each axis see: a, the share of a voxel's face that fronts of
+// surfaces cover; rgb, their radiance times that share.
 struct Sides {
     vec4 plus[3];
     vec4 minus[3];
@@ -20,7 +20,8 @@ struct Sides {
 vec4 unpack_half4(uvec2 code) { return vec4(unpackHalf2x16(code.x), unpackHalf2x16(code.y)); }
 uvec2 pack_half4(vec4 v) { return uvec2(packHalf2x16(v.xy), packHalf2x16(v.zw)); }
 
-// A leaf's opacity is its material's, along those axes along which its lattice line meets a surface.
+// A leaf's opacity is its material's, along those axes along which its lattice line meets a
+// surface.
 float leaf_opacity(uint voxel) { return unpackUnorm4x8(attributes[voxel].albedo).a; }
 
 // Bits of the sides that lattice lines meet: +x -x +y -y +z -z.

@@ -1,7 +1,8 @@
 // The occupied voxels of the octree, listed by nodes.comp in no order: passes over them dispatch a
 // thread for each. First those above the leaves, brick * 8 + octant, each level's from its first
-// brick * 8 on; then those of the leaves, slot * 8 + octant. Where bricks keep their slots, the lists
-// hold what is to be done anew, and after them stand the bricks: above the finest level, the finest.
+// brick * 8 on; then those of the leaves, slot * 8 + octant. Where bricks keep their slots, the
+// lists hold what is to be done anew, and after them stand the bricks: above the finest level, the
+// finest.
 
 #include "shared/octree.glsl"
 

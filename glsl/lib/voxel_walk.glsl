@@ -1,5 +1,5 @@
-// An eye's ray through the voxels of one level of the octree: begin, then while inside look at `point`
-// and walk on.
+// An eye's ray through the voxels of one level of the octree: begin, then while inside look at
+// `point` and walk on.
 
 #include "lib/octree.glsl"
 #include "lib/view.glsl"

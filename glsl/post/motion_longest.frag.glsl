@@ -1,6 +1,6 @@
 // The longest streak of each tile: first down its columns (AXIS 1), then along the row of what was
-// found (0), so that no thread looks at more than a tile's side. [McGuire12 "A Reconstruction Filter
-// for Plausible Motion Blur"]
+// found (0), so that no thread looks at more than a tile's side. [McGuire12 "A Reconstruction
+// Filter for Plausible Motion Blur"]
 #include "shared/motion_blur.glsl"
 
 #ifndef AXIS

@@ -1,5 +1,5 @@
-// Deferred shading: adds direct and indirect light to the emission in scene_color, and the sky where
-// nothing is. [Mittring12 "Shading"]
+// Deferred shading: adds direct and indirect light to the emission in scene_color, and the sky
+// where nothing is. [Mittring12 "Shading"]
 #ifndef SKY
 #define SKY 1
 #endif

@@ -1,4 +1,5 @@
-// A box that projects its material along -z onto what it holds: the cube -0.5..0.5 in its own space.
+// A box that projects its material along -z onto what it holds: the cube -0.5..0.5 in its own
+// space.
 const uint DECAL_COLOR = 1u;      // the channels of the surface below that it changes
 const uint DECAL_NORMAL = 2u;
 const uint DECAL_ROUGHNESS = 4u;

@@ -1,4 +1,5 @@
-// Which decals colour the fragment queue in one pass, by the cells of a grid over all decals' boxes.
+// Which decals colour the fragment queue in one pass, by the cells of a grid over all decals'
+// boxes.
 const uint DECAL_CELLS_A_SIDE = 16u;
 
 layout(std140) uniform DecalPaint {

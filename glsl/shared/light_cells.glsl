@@ -1,6 +1,6 @@
 // A grid of cells with a bit for each light: whether it may reach the cell. Flat bit arrays
-// [Drobot17 "Improved Culling for Tiled and Clustered Rendering"] can't overflow, and keep the order
-// of the lights, so that sums round as without them.
+// [Drobot17 "Improved Culling for Tiled and Clustered Rendering"] can't overflow, and keep the
+// order of the lights, so that sums round as without them.
 
 layout(std140) uniform LightCells {
     uvec3 count;             // cells along x, y and depth, or z

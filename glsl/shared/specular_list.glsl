@@ -1,5 +1,5 @@
-// A list of pixels, y << 16 | x, and the dispatch over it. [Mittring12 "Specular Sampling 2/2": State[]
-// and RWScratchColors[]]
+// A list of pixels, y << 16 | x, and the dispatch over it. [Mittring12 "Specular Sampling 2/2":
+// State[] and RWScratchColors[]]
 
 const uint SPECULAR_GROUP = 64u;
 

@@ -1,6 +1,6 @@
-// Edge-aware up-sampling: the mean of the 4x4 half-res texels around a pixel that lie on its surface,
-// so that the pattern of rotations cancels. The factor multiplies the G-buffer's ambient occlusion.
-// [Mittring12 "SSAO sampling": 16 rotations interleaved in 4x4 pattern]
+// Edge-aware up-sampling: the mean of the 4x4 half-res texels around a pixel that lie on its
+// surface, so that the pattern of rotations cancels. The factor multiplies the G-buffer's ambient
+// occlusion. [Mittring12 "SSAO sampling": 16 rotations interleaved in 4x4 pattern]
 #ifndef SHOW
 #define SHOW 0  // 1: a picture of the factor instead
 #endif

@@ -1,4 +1,5 @@
-// Linear radiance on an sRGB display, clipped at 1: how the window shows views without a tone curve.
+// Linear radiance on an sRGB display, clipped at 1: how the window shows views without a tone
+// curve.
 #include "lib/tonemap.glsl"
 
 uniform sampler2D u_radiance;

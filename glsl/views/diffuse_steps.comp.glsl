@@ -1,5 +1,5 @@
-// How many samples a diffuse cone takes: the mean over all of a pixel's, of which a frame traces one
-// group and takes the others from the pixels around.
+// How many samples a diffuse cone takes: the mean over all of a pixel's, of which a frame traces
+// one group and takes the others from the pixels around.
 
 #include "lib/cone_steps.glsl"
 #include "lib/diffuse_cone.glsl"

@@ -1,5 +1,5 @@
-// What nodes hold, as false colours: each pixel's ray walks the voxels of one level to the first one
-// in a node that holds any, or, for the regions, that is occupied itself.
+// What nodes hold, as false colours: each pixel's ray walks the voxels of one level to the first
+// one in a node that holds any, or, for the regions, that is occupied itself.
 #ifndef REGIONS
 #define REGIONS 0  // 1: the leaf level of the voxel's region; 0: how many of its voxels the node holds
 #endif

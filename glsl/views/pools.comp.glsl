@@ -1,5 +1,6 @@
 // How full the octree's pools are: a bar each, as long as its share that is in use. From the top:
-// fragments, tiles of eight nodes, bricks, bricks with leaf attributes, bricks above the finest level.
+// fragments, tiles of eight nodes, bricks, bricks with leaf attributes, bricks above the finest
+// level.
 
 #include "lib/false_color.glsl"
 #include "shared/octree.glsl"

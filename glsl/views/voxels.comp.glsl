@@ -1,4 +1,5 @@
-// The octree itself: each pixel's ray walks the voxels of one level to the first that is opaque enough.
+// The octree itself: each pixel's ray walks the voxels of one level to the first that is opaque
+// enough.
 
 #include "lib/svo_lookup.glsl"
 #include "lib/voxel_walk.glsl"
