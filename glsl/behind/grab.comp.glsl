@@ -15,5 +15,6 @@ void main() {
     if (any(greaterThanEqual(pixel, ivec2(u_view.viewport_px.xy)))) return;
     float depth = texelFetch(u_depth, pixel, 0).r;
     float inverse = depth == DEPTH_CLEAR ? 0.0 : 1.0 / linear_depth(depth);
-    imageStore(o_behind, pixel, vec4(finite_radiance(texelFetch(u_scene_color, pixel, 0).rgb), inverse));
+    imageStore(o_behind, pixel,
+               vec4(finite_radiance(texelFetch(u_scene_color, pixel, 0).rgb), inverse));
 }

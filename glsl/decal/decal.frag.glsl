@@ -56,7 +56,8 @@ void main() {
                                                 decal_uv, vec4(1.0), u_material.time_s));
     opacity *= clamp(s.opacity, 0.0, 1.0);
     GBufferSurface surface;
-    surface.normal_ws = surface_normal(s, normal_ws, vec4(normalize(world_from_decal[0].xyz), 1.0), 1.0);
+    surface.normal_ws = surface_normal(s, normal_ws, vec4(normalize(world_from_decal[0].xyz), 1.0),
+                                       1.0);
     surface.lighting_model = LIGHTING_DEFAULT;
     surface.specular_color = s.specular_color;
     surface.ambient_occlusion = 1.0;

@@ -33,11 +33,13 @@ struct Painted {
 // What a decal makes of a fragment. Of the fragment's face, a voxel wide, it covers a part.
 void paint(uint number, vec3 p_ws, vec3 normal_ws, float mask, inout Painted painted) {
     mat4 world_from_decal = decals[number].world_from_decal;
-    vec3 size_m = vec3(length(world_from_decal[0]), length(world_from_decal[1]), length(world_from_decal[2]));
+    vec3 size_m = vec3(length(world_from_decal[0]), length(world_from_decal[1]),
+                       length(world_from_decal[2]));
     vec3 local = (decals[number].decal_from_world * vec4(p_ws, 1.0)).xyz;
     float voxel_m = u_octree.voxel_m;
     if (abs(local.z) * size_m.z > 0.5 * size_m.z + FRAGMENT_REACH * voxel_m) return;
-    float opacity = mask * decals[number].opacity * decal_cover(local.xy * size_m.xy, size_m.xy, voxel_m);
+    float opacity = mask * decals[number].opacity
+        * decal_cover(local.xy * size_m.xy, size_m.xy, voxel_m);
     opacity *= decal_fade(normal_ws, normalize(world_from_decal[2].xyz), decals[number].fade_end,
                           decals[number].fade_scale);
     if (opacity <= 0.0) return;
@@ -50,7 +52,8 @@ void paint(uint number, vec3 p_ws, vec3 normal_ws, float mask, inout Painted pai
     uint channels = decals[number].channels;
     vec3 albedo = s.albedo + mirrored_share(s.specular_color, s.roughness);
     if ((channels & DECAL_COLOR) != 0u) painted.albedo = mix(painted.albedo, albedo, opacity);
-    if ((channels & DECAL_EMISSION) != 0u) painted.emissive = mix(painted.emissive, s.emissive, opacity);
+    if ((channels & DECAL_EMISSION) != 0u)
+        painted.emissive = mix(painted.emissive, s.emissive, opacity);
 }
 
 void main() {
@@ -61,9 +64,11 @@ void main() {
     if (mask <= 0.0) return;
     vec3 p_ws = world_from_scene_point(vec3(unpack_position(code)));
     vec3 cell = floor((p_ws - u_decal_paint.low_ws) * u_decal_paint.cells_a_metre);
-    if (any(lessThan(cell, vec3(0.0))) || any(greaterThanEqual(cell, vec3(DECAL_CELLS_A_SIDE)))) return;
+    if (any(lessThan(cell, vec3(0.0))) || any(greaterThanEqual(cell, vec3(DECAL_CELLS_A_SIDE))))
+        return;
     uvec3 at = uvec3(cell);
-    uint word = u_decal_paint.first_word + (at.z * DECAL_CELLS_A_SIDE + at.y) * DECAL_CELLS_A_SIDE + at.x;
+    uint word = u_decal_paint.first_word + (at.z * DECAL_CELLS_A_SIDE + at.y) * DECAL_CELLS_A_SIDE
+        + at.x;
     uint end = decal_words[word + 1u];
     uint first = decal_words[word];
     if (first == end) return;

@@ -42,7 +42,8 @@ vec3 indirect_light(ShadingPoint p, float opacity) {
     vec3 indirect = vec3(0.0);
 #if GI
     vec3 scattered = p.albedo + p.subsurface_color;
-    if (opacity * largest(scattered) > VISIBLE_SHARE) indirect += scattered * gathered_diffuse(p.p_ws, p.n_ws);
+    if (opacity * largest(scattered) > VISIBLE_SHARE)
+        indirect += scattered * gathered_diffuse(p.p_ws, p.n_ws);
     if (opacity * largest(p.mirrored) > VISIBLE_SHARE) {
         indirect += p.mirrored * specular_cone(p.p_ws, p.n_ws, half_angle).rgb;
     }
@@ -110,7 +111,8 @@ void main() {
 #if TRANSMISSION
         Transmission through = transmission_of(s, point, radius_m);
         vec3 passes = through.shares.passes;
-        if (largest(passes) > VISIBLE_SHARE) radiance += passes * transmitted_light(s, point, through.ray);
+        if (largest(passes) > VISIBLE_SHARE)
+            radiance += passes * transmitted_light(s, point, through.ray);
         direct.specular *= through.shares.mirrored / max(point.mirrored, 1e-4);
         point.mirrored = through.shares.mirrored;
 #endif

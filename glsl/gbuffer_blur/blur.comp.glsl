@@ -46,7 +46,8 @@ void main() {
         float z = linear_depths(vec4(depth)).x;
         vec4 along = dot(ray, n_vs) + vec4(vec2(-1.0, 1.0) * pixel_ray.x * n_vs.x,
                                            vec2(-1.0, 1.0) * pixel_ray.y * n_vs.y);
-        vec4 off_plane = abs(linear_depths(depths) * along - z * dot(ray, n_vs)) / (z * pixel_ray.y);
+        vec4 off_plane = abs(linear_depths(depths) * along - z * dot(ray, n_vs))
+            / (z * pixel_ray.y);
         vec3 sum = normal;
         float open = low_ao.y;
         float weights = 1.0;

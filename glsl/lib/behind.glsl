@@ -1,7 +1,8 @@
 // Radiance behind a translucent surface, from a picture of what is drawn already.
 #include "lib/view.glsl"
 
-uniform sampler2D u_behind;  // rgb, a: 1 / distance from the eye's plane; its levels are ever blurrier
+// rgb, a: 1 / distance from the eye's plane; its levels are ever blurrier.
+uniform sampler2D u_behind;
 
 const int BEHIND_STEPS = 20;          // over the picture, towards where the ray meets its surface,
 const int BEHIND_HALVINGS = 5;        // then within the step that met it
@@ -34,7 +35,8 @@ vec3 place_in_picture(vec3 p_ws) {
 // Where the way from one place of the picture to another leaves it, 0..1.
 float end_in_picture(vec2 from, vec2 to) {
     vec2 way = to - from;
-    vec2 to_rim = (vec2(greaterThan(way, vec2(0.0))) - from) / (way + vec2(equal(way, vec2(0.0))) * 1e-9);
+    vec2 to_rim = (vec2(greaterThan(way, vec2(0.0))) - from)
+        / (way + vec2(equal(way, vec2(0.0))) * 1e-9);
     vec2 ends = mix(to_rim, vec2(1.0), lessThan(abs(way), vec2(1e-9)));
     return clamp(min(ends.x, ends.y), 0.0, 1.0);
 }
@@ -94,7 +96,8 @@ vec4 radiance_behind(vec3 origin, vec3 direction, float half_angle) {
     // Depths are known by pixels: the ray may be as much behind as it goes over two of them.
     float two_pixels = 2.0 / max(length((end.xy - start.xy) * u_view.viewport_px.xy), 1.0);
     float pixels_m = abs(1.0 / met.z - 1.0 / mix(start.z, end.z, max(at - two_pixels, 0.0)));
-    if (!meets_picture(met, gap, pixels_m)) return seen.x >= 0.0 ? guess_behind(seen, step_px) : vec4(0.0);
+    if (!meets_picture(met, gap, pixels_m))
+        return seen.x >= 0.0 ? guess_behind(seen, step_px) : vec4(0.0);
     float way = min(far * at * end.z / met.z, BEHIND_FARTHEST);
     float pixel_m = 2.0 * view_ray().y / met.z * u_view.viewport_px.w;
     float lod = log2(max(tan(half_angle) * way / pixel_m, 1.0));

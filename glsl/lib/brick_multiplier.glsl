@@ -19,7 +19,8 @@ layout(std430) buffer ScaledNodes { Node scaled_nodes[]; };
 // inverse.
 float store_multiplier(uint brick, float maximum) {
     uint code = scale_code(maximum);
-    scaled_nodes[bricks[brick].node & BRICK_NODE_MASK].brick = (brick + 1u) | (code << NODE_SCALE_SHIFT);
+    scaled_nodes[bricks[brick].node & BRICK_NODE_MASK].brick = (brick + 1u)
+        | (code << NODE_SCALE_SHIFT);
     return exp2(float(NODE_SCALE_BIAS) - float(code));
 }
 

@@ -154,6 +154,7 @@ float cone_weight(vec3 normal, vec3 direction) {
 // What a group's weighted sum is divided by.
 float cone_group_weight(vec3 normal, int cone) {
     float sum = 0.0;
-    for (int i = 0; i < CONE_SPLIT; ++i) sum += cone_weight(normal, CONE_DIRECTIONS[cone * CONE_SPLIT + i]);
+    for (int i = 0; i < CONE_SPLIT; ++i)
+        sum += cone_weight(normal, CONE_DIRECTIONS[cone * CONE_SPLIT + i]);
     return sum;
 }

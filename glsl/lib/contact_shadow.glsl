@@ -33,12 +33,14 @@ float contact_visibility(uint view, vec2 uv, vec2 away, float depth, float w) {
     vec2 place_px = (shadow_views[view].offset_uv + uv * shadow_views[view].scale) * size;
     // The corner that four texels share.
     vec2 corner_px = floor(place_px + AWAY_TEXELS * away / max(length(away), 1e-12) + 0.5);
-    vec4 d = textureGather(u_shadow_depths, vec3(corner_px / size, shadow_views[view].layer));  // (0, 1), (1, 1), (1, 0), (0, 0)
+    // At (0, 1), (1, 1), (1, 0), (0, 0).
+    vec4 d = textureGather(u_shadow_depths, vec3(corner_px / size, shadow_views[view].layer));
     vec2 slope = 0.5 * vec2(d.y - d.x + d.z - d.w, d.x - d.w + d.y - d.z);
     float steep = abs(slope.x) + abs(slope.y);
     if (abs(d.y + d.w - d.x - d.z) > PLANE_TWIST * steep) return NO_CONTACT;
     mat4 m = shadow_views[view].clip_from_world;
-    float metres = metres_of_depth(shadow_views[view].depth_range_m, vec3(m[0].w, m[1].w, m[2].w), w);
+    float metres = metres_of_depth(shadow_views[view].depth_range_m, vec3(m[0].w, m[1].w, m[2].w),
+                                   w);
     if (length(slope) * metres > STEEPEST * shadow_views[view].texel * w) return NO_CONTACT;
     float before = depth - 0.25 * (d.x + d.y + d.z + d.w) - dot(slope, place_px - corner_px);
     if (abs(before) > SHADOW_KERNEL_RADIUS * steep) return NO_CONTACT;

@@ -14,12 +14,14 @@ const float NORMAL_CODE_LAST = 1023.0;
 uvec2 receiver_pack(Receiver r) {
     uint depth = min(uint(round(r.depth * DEPTH24_LAST)), uint(DEPTH24_LAST));
     uvec3 normal = uvec3(r.normal_code * NORMAL_CODE_LAST + 0.5);
-    return uvec2(depth << 8 | uint(r.mask * MASK_LAST + 0.5), normal.x | normal.y << 10 | normal.z << 20);
+    return uvec2(depth << 8 | uint(r.mask * MASK_LAST + 0.5),
+                 normal.x | normal.y << 10 | normal.z << 20);
 }
 
 Receiver receiver_unpack(uvec2 code) {
     vec3 normal_code = vec3(uvec3(code.y, code.y >> 10, code.y >> 20) & 1023u) / NORMAL_CODE_LAST;
-    return Receiver(float(code.x >> 8) / DEPTH24_LAST, normal_code, float(code.x & 255u) / MASK_LAST);
+    return Receiver(float(code.x >> 8) / DEPTH24_LAST, normal_code,
+                    float(code.x & 255u) / MASK_LAST);
 }
 
 // 1 on what faces the decal's z, 0 beyond the angle at which it ends: sides and backs stay clean.

@@ -7,6 +7,7 @@ const float SHARP_PX = 0.5;  // smaller circles stay inside their pixel
 // Radius in px of the picture; negative before the focus. depth_m: along the view.
 float circle_radius(float depth_m) {
     float behind = depth_m - u_focus.distance;
-    float share = clamp(behind < 0.0 ? behind * u_focus.per_near : behind * u_focus.per_far, -1.0, 1.0);
+    float share = clamp(behind < 0.0 ? behind * u_focus.per_near : behind * u_focus.per_far, -1.0,
+                        1.0);
     return share * u_focus.largest_px;
 }

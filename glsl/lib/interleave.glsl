@@ -12,7 +12,9 @@ int part_of_pixel(ivec2 pixel) {
 }
 
 // Where a pixel's sample stands.
-ivec2 sub_image_texel(ivec2 pixel, ivec2 size) { return pixel / 3 + sub_image_size(size) * (pixel % 3); }
+ivec2 sub_image_texel(ivec2 pixel, ivec2 size) {
+    return pixel / 3 + sub_image_size(size) * (pixel % 3);
+}
 
 // What a thread of a dispatch over (x, y) of a sub-image and the nine works on.
 struct InterleavedPixel {

@@ -8,7 +8,9 @@ uvec3 unpack_position(uint code) { return uvec3(code, code >> 10, code >> 20) & 
 // A fragment's position holds, above its coordinates, the share of a decal that its surface takes,
 // in thirds.
 const uint DECAL_MASK_SHIFT = 30u;
-uint decal_mask_bits(float mask) { return uint(clamp(mask, 0.0, 1.0) * 3.0 + 0.5) << DECAL_MASK_SHIFT; }
+uint decal_mask_bits(float mask) {
+    return uint(clamp(mask, 0.0, 1.0) * 3.0 + 0.5) << DECAL_MASK_SHIFT;
+}
 float decal_mask_of_position(uint code) { return float(code >> DECAL_MASK_SHIFT) / 3.0; }
 
 uint pack_cell(uvec3 cell, int level, bool leaf) {

@@ -54,7 +54,8 @@ struct LightWalk {
 
 #if LIGHT_CELLS != ALL_LIGHTS
 void next_light(inout LightWalk walk) {
-    while (walk.bits == 0u && ++walk.word < u_light_cells.words) walk.bits = light_bits(walk.cell, walk.word);
+    while (walk.bits == 0u && ++walk.word < u_light_cells.words)
+        walk.bits = light_bits(walk.cell, walk.word);
     walk.light = walk.bits == 0u ? light_count() : 32u * walk.word + uint(findLSB(walk.bits));
     walk.bits &= walk.bits - 1u;
 }

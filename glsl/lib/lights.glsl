@@ -57,7 +57,8 @@ vec3 mask_share(Light light, vec3 offset, float footprint_m) {
     float lod = log2(max(0.5 * footprint_m * light.mask_scale / along * texels, 1.0));
     vec2 uv = across * (0.5 / along) + 0.5;
     if (any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.0);
-    float rim = light.mask_offset == vec2(0.0) ? 0.5 * exp2(lod) / texels : 0.0;  // what repeats is not seen
+    // What repeats is not seen.
+    float rim = light.mask_offset == vec2(0.0) ? 0.5 * exp2(lod) / texels : 0.0;
     uv = clamp(uv, min(rim, 0.5), 1.0 - min(rim, 0.5)) - light.mask_offset;
     return textureLod(u_light_shapes, vec3(uv, float(light.mask)), lod).rgb;
 }
@@ -69,7 +70,8 @@ LightSample sample_light(Light light, vec3 p_ws, float footprint_m) {
         s.to_light = -light.direction_ws;
         s.distance_m = 1.0;
         s.irradiance = light.intensity;
-        if (light.mask >= 0) s.irradiance *= mask_share(light, p_ws - light.position_ws, footprint_m);
+        if (light.mask >= 0)
+            s.irradiance *= mask_share(light, p_ws - light.position_ws, footprint_m);
         return s;
     }
     vec3 offset = light.position_ws - p_ws;

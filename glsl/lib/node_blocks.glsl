@@ -32,7 +32,9 @@ uvec2 node_counts(uvec2 bits, int level) {
 uint group_block(uint group) { return u_octree.block_count + group; }
 
 // Bricks and tiles before a block.
-uvec2 block_rank(uint block) { return block_sums(block) + block_sums(group_block(block / SCAN_BLOCKS)); }
+uvec2 block_rank(uint block) {
+    return block_sums(block) + block_sums(group_block(block / SCAN_BLOCKS));
+}
 
 // Word of the node with this code in the grid of its level; its bit is cell_bit(code).
 uint node_word(int level, uint code) {

@@ -91,7 +91,8 @@ vec2 mosaic(vec3 p) {
         vec3 offset = there + hash_cell(cell + there) - f;
         vec3 between = offset - nearest;
         float squared = dot(between, between);
-        if (squared > 1e-6) border = min(border, dot(0.5 * (nearest + offset), between) * inversesqrt(squared));
+        if (squared > 1e-6)
+            border = min(border, dot(0.5 * (nearest + offset), between) * inversesqrt(squared));
     }
     return vec2(border, hash_cell(nearest_cell + 71.0).x);
 }

@@ -72,7 +72,8 @@ bool is_hidden(sampler2D pyramid, Footprint footprint) {
     ivec2 from = footprint.from, to = footprint.to;
     int level = 0;
     while (level < PYRAMID_LEVELS - 1
-        && any(greaterThanEqual((to >> (level + 1)) - (from >> (level + 1)), ivec2(PYRAMID_SPAN)))) {
+        && any(greaterThanEqual((to >> (level + 1)) - (from >> (level + 1)),
+                                ivec2(PYRAMID_SPAN)))) {
         ++level;
     }
     from >>= level + 1;

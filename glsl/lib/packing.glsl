@@ -76,7 +76,8 @@ vec2 octahedral_fold(vec2 p) {
 
 vec3 octahedral_decode(vec2 p) {
     vec3 d = vec3(p, 1.0 - abs(p.x) - abs(p.y));
-    if (d.z < 0.0) d.xy = (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0);
+    if (d.z < 0.0)
+        d.xy = (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0);
     return normalize(d);
 }
 

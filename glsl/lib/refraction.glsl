@@ -31,7 +31,8 @@ RefractedRay refract_through(vec3 p_ws, vec3 direction, vec3 normal, float ior, 
                              float roundness) {
     if (thickness_m <= 0.0) return RefractedRay(p_ws, direction, 0.0);
     vec3 inside = refract(direction, normal, 1.0 / ior);
-    if (inside == vec3(0.0)) return RefractedRay(p_ws, direction, thickness_m);  // of an ior below 1
+    // Of an ior below 1.
+    if (inside == vec3(0.0)) return RefractedRay(p_ws, direction, thickness_m);
     float cosine = -dot(inside, normal);
     // A pane is as thick along its normal; through a ball the chord is 2 r cos.
     float path = thickness_m * mix(1.0 / max(cosine, 0.1), cosine, roundness);

@@ -33,13 +33,16 @@ Sides sides_of_voxel(uint brick, uint voxel) {
 #elif VOXEL_KIND == FILTERED_VOXELS
     return filtered_sides(brick * BRICK_VOXELS + voxel);
 #else
-    if ((bricks[brick].cell & BRICK_LEAF) != 0u) return leaf_sides(leaf_slot(brick) * BRICK_VOXELS + voxel);
+    if ((bricks[brick].cell & BRICK_LEAF) != 0u)
+        return leaf_sides(leaf_slot(brick) * BRICK_VOXELS + voxel);
     return filtered_sides(brick * BRICK_VOXELS + voxel);
 #endif
 }
 
 // Opacities along the axes: a voxel hides the same towards both sides.
-vec3 filtered_opacity(uint voxel) { return unpack_half4(sided[voxel * BRICK_STACKS + BRICK_DIRECTIONS]).xyz; }
+vec3 filtered_opacity(uint voxel) {
+    return unpack_half4(sided[voxel * BRICK_STACKS + BRICK_DIRECTIONS]).xyz;
+}
 
 vec3 opacity_of_voxel(uint brick, uint voxel) {
 #if VOXEL_KIND == LEAF_VOXELS
@@ -47,7 +50,8 @@ vec3 opacity_of_voxel(uint brick, uint voxel) {
 #elif VOXEL_KIND == FILTERED_VOXELS
     return filtered_opacity(brick * BRICK_VOXELS + voxel);
 #else
-    if ((bricks[brick].cell & BRICK_LEAF) != 0u) return leaf_opacities(leaf_slot(brick) * BRICK_VOXELS + voxel);
+    if ((bricks[brick].cell & BRICK_LEAF) != 0u)
+        return leaf_opacities(leaf_slot(brick) * BRICK_VOXELS + voxel);
     return filtered_opacity(brick * BRICK_VOXELS + voxel);
 #endif
 }

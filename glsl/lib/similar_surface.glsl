@@ -7,7 +7,9 @@ const float PLANE_TOLERANCE = 0.01;
 // What any neighbour counts at least: a pixel without similar ones is filled, not black.
 const float LEAST_SIMILARITY = 1e-4;
 
-float inverse_plane_tolerance(vec3 p_ws) { return 1.0 / (PLANE_TOLERANCE * distance(p_ws, u_view.eye_ws)); }
+float inverse_plane_tolerance(vec3 p_ws) {
+    return 1.0 / (PLANE_TOLERANCE * distance(p_ws, u_view.eye_ws));
+}
 
 // 1 on the pixel's tangent plane, 0 off it.
 float plane_similarity(vec3 other_ws, vec3 p_ws, vec3 normal, float inverse_tolerance) {

@@ -17,7 +17,8 @@ vec3 sky_level(vec2 octahedral, float level) {
 vec3 sky_radiance(vec3 dir, float cone_half_angle) {
     vec2 octahedral = octahedral_encode(dir);
     float last = u_sky_params.level_count - 1.0;
-    float level = clamp(last + log2(max(cone_half_angle, 1e-6) / u_sky_params.widest_angle), 0.0, last);
+    float level = clamp(last + log2(max(cone_half_angle, 1e-6) / u_sky_params.widest_angle), 0.0,
+                        last);
     float lower = floor(level);
     vec3 fine = sky_level(octahedral, lower);
     vec3 coarse = sky_level(octahedral, min(lower + 1.0, last));

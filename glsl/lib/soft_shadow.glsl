@@ -49,7 +49,8 @@ struct SoftReceiver {
 vec3 on_plane(Light light, SoftReceiver r, vec2 offset_m) {
     vec3 offset = r.across * offset_m.x + r.along * offset_m.y;
     float cosine = dot(r.n_ws, r.to_light);
-    if (light.kind == LIGHT_DIRECTIONAL) return r.p_ws + offset - r.to_light * (dot(r.n_ws, offset) / cosine);
+    if (light.kind == LIGHT_DIRECTIONAL)
+        return r.p_ws + offset - r.to_light * (dot(r.n_ws, offset) / cosine);
     vec3 from_light = r.p_ws + offset - light.position_ws;
     float height = dot(r.n_ws, light.position_ws - r.p_ws);
     return light.position_ws + from_light / (1.0 - dot(r.n_ws, offset) / height);
@@ -81,9 +82,11 @@ ShadowTap tap_at(Light light, uint view, vec3 p_ws) {
 // blocker of distances from a local light; of a directional light the way between them in m.
 float penumbra_growth(Light light, ShadowTap tap, float blocker_depth) {
     vec2 range_m = shadow_views[tap.view].depth_range_m;
-    if (light.kind == LIGHT_DIRECTIONAL) return (tap.depth - blocker_depth) * (range_m.y - range_m.x);
+    if (light.kind == LIGHT_DIRECTIONAL)
+        return (tap.depth - blocker_depth) * (range_m.y - range_m.x);
     float ndc = blocker_depth * 2.0 - 1.0;
-    float blocker_w = 2.0 * range_m.x * range_m.y / (range_m.x + range_m.y - ndc * (range_m.y - range_m.x));
+    float blocker_w = 2.0 * range_m.x * range_m.y
+        / (range_m.x + range_m.y - ndc * (range_m.y - range_m.x));
     return (tap.w - blocker_w) / blocker_w;
 }
 
@@ -94,27 +97,31 @@ float soft_visibility(Light light, uint view, vec3 p_ws, vec3 n_ws, vec3 to_ligh
     float sine = sqrt(clamp(1.0 - cosine * cosine, 0.0, 1.0));
     float w = abs((shadow_views[view].clip_from_world * vec4(p_ws, 1.0)).w);
     float texel_m = shadow_views[view].texel * w;
-    float growth_max = light.kind == LIGHT_DIRECTIONAL ? SUN_BLOCKER_REACH : 1.0 / NEAREST_BLOCKER - 1.0;
+    float growth_max = light.kind == LIGHT_DIRECTIONAL ? SUN_BLOCKER_REACH
+        : 1.0 / NEAREST_BLOCKER - 1.0;
     float disc_max = 1e30;
     if (light.kind != LIGHT_DIRECTIONAL) {
         float distance_m = length(light.position_ws - p_ws);
         disc_max = distance_m * min(DISC_OF_HEIGHT * cosine / max(sine, 1e-3), DISC_OF_DISTANCE);
     }
     float search_m = min(light.penumbra_radius * growth_max, disc_max);
-    if (cosine <= 0.0 || search_m < SOFT_TEXELS * texel_m) return view_visibility(view, p_ws, n_ws, to_light, 0.0);
+    if (cosine <= 0.0 || search_m < SOFT_TEXELS * texel_m)
+        return view_visibility(view, p_ws, n_ws, to_light, 0.0);
 
     SoftReceiver r;
     r.lift_m = SHADOW_KERNEL_RADIUS * texel_m * (sine + SHADOW_OFFSET_BASE);
     r.p_ws = p_ws + n_ws * r.lift_m;
     r.n_ws = n_ws;
     r.to_light = to_light;
-    r.across = normalize(abs(to_light.y) < 0.9 ? cross(to_light, vec3(0.0, 1.0, 0.0)) : cross(to_light, vec3(1.0, 0.0, 0.0)));
+    r.across = normalize(abs(to_light.y) < 0.9 ? cross(to_light, vec3(0.0, 1.0, 0.0))
+                         : cross(to_light, vec3(1.0, 0.0, 0.0)));
     r.along = cross(to_light, r.across);
 
     float growth = 0.0;
     int blockers = 0;
     for (int i = 0; i < BLOCKER_SAMPLES; ++i) {
-        ShadowTap tap = tap_at(light, view, on_plane(light, r, search_m * sunflower(i, BLOCKER_SAMPLES)));
+        ShadowTap tap = tap_at(light, view,
+                               on_plane(light, r, search_m * sunflower(i, BLOCKER_SAMPLES)));
         float depth = textureLod(u_shadow_depths, tap.place, 0.0).r;
         if (depth >= tap.depth) continue;
         growth += penumbra_growth(light, tap, depth);
@@ -126,7 +133,8 @@ float soft_visibility(Light light, uint view, vec3 p_ws, vec3 n_ws, vec3 to_ligh
     radius_m = min(max(radius_m, SOFT_TEXELS * texel_m), disc_max);
     float lit = 0.0;
     for (int i = 0; i < PENUMBRA_SAMPLES; ++i) {
-        ShadowTap tap = tap_at(light, view, on_plane(light, r, radius_m * sunflower(i, PENUMBRA_SAMPLES)));
+        ShadowTap tap = tap_at(light, view,
+                               on_plane(light, r, radius_m * sunflower(i, PENUMBRA_SAMPLES)));
         lit += texture(u_shadow_maps, vec4(tap.place, tap.depth));
     }
     return lit / float(PENUMBRA_SAMPLES);

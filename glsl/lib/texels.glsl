@@ -2,6 +2,8 @@
 // may flush small ones, and the words beside them are no floats.
 mat4 texel_matrix(usamplerBuffer texels, uint first) {
     int at = int(first);
-    return mat4(uintBitsToFloat(texelFetch(texels, at)), uintBitsToFloat(texelFetch(texels, at + 1)),
-                uintBitsToFloat(texelFetch(texels, at + 2)), uintBitsToFloat(texelFetch(texels, at + 3)));
+    return mat4(uintBitsToFloat(texelFetch(texels, at)),
+                uintBitsToFloat(texelFetch(texels, at + 1)),
+                uintBitsToFloat(texelFetch(texels, at + 2)),
+                uintBitsToFloat(texelFetch(texels, at + 3)));
 }

@@ -3,7 +3,8 @@
 // IEC 61966-2-1, per channel.
 vec3 srgb_encode(vec3 linear) {
     vec3 c = clamp(linear, 0.0, 1.0);
-    return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308)));
+    return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c,
+               lessThanEqual(c, vec3(0.0031308)));
 }
 
 uint hash_pcg(uint x) {  // [Jarzynski20 "Hash Functions for GPU Rendering"]

@@ -29,5 +29,6 @@ vec2 view_ray() {
     mat4 m = u_view.clip_from_world;
     vec3 row_x = vec3(m[0].x, m[1].x, m[2].x);
     vec3 row_y = vec3(m[0].y, m[1].y, m[2].y);
-    return 1.0 / vec2(dot(row_x, u_view.world_from_view[0].xyz), dot(row_y, u_view.world_from_view[1].xyz));
+    return 1.0 / vec2(dot(row_x, u_view.world_from_view[0].xyz),
+                      dot(row_y, u_view.world_from_view[1].xyz));
 }

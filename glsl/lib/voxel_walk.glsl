@@ -37,7 +37,8 @@ VoxelWalk begin_walk(vec2 uv, int level) {
 bool walk_inside(inout VoxelWalk walk) {
     vec3 p = walk.origin + walk.direction * (walk.t + WALK_EPSILON);
     walk.point = uvec3(max(p, 0.0));
-    return walk.t >= 0.0 && all(greaterThanEqual(p, vec3(0.0))) && all(lessThan(p, vec3(walk.side)));
+    return walk.t >= 0.0 && all(greaterThanEqual(p, vec3(0.0)))
+        && all(lessThan(p, vec3(walk.side)));
 }
 
 void walk_on(inout VoxelWalk walk) {

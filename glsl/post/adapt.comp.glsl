@@ -56,7 +56,8 @@ void main() {
     float measured = average_between(u_exposure.low_share, u_exposure.high_share);
     float lowest = u_exposure.min_brightness;
     float highest = u_exposure.max_brightness;
-    float wanted = measured > lowest ? min(measured, highest) : lowest;  // also where it is no number
+    // Also where it is no number.
+    float wanted = measured > lowest ? min(measured, highest) : lowest;
     float before = u_exposure.starts == 1u ? wanted : clamp(eye.brightness, lowest, highest);
     float keep = wanted > before ? u_exposure.keep_up : u_exposure.keep_down;
     eye.measured = measured;

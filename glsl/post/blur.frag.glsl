@@ -21,7 +21,8 @@ void main() {
     vec3 sum = u_blur.center * texelFetch(u_picture, ivec2(gl_FragCoord.xy), 0).rgb;
     for (uint i = 0u; i < u_blur.count; ++i) {
         vec2 offset = u_blur.pairs[i].x * u_blur.axis;
-        sum += u_blur.pairs[i].y * (textureLod(u_picture, (gl_FragCoord.xy + offset) / size, 0.0).rgb
+        sum += u_blur.pairs[i].y
+            * (textureLod(u_picture, (gl_FragCoord.xy + offset) / size, 0.0).rgb
             + textureLod(u_picture, (gl_FragCoord.xy - offset) / size, 0.0).rgb);
     }
     sum *= u_blur.factor;

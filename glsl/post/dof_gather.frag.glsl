@@ -25,7 +25,8 @@ void main() {
             float angle = 2.0 * PI * (float(k) + 0.5 * float(ring & 1)) / float(taps);
             vec2 offset = spacing * float(ring) * vec2(cos(angle), sin(angle));
             ivec2 place = ivec2(floor(gl_FragCoord.xy + offset));
-            vec4 tap = texelFetch(u_prepared, clamp(place, ivec2(0), last), 0);  // circles don't mix
+            // Circles don't mix.
+            vec4 tap = texelFetch(u_prepared, clamp(place, ivec2(0), last), 0);
             float distance = length(vec2(place) + 0.5 - gl_FragCoord.xy);
             float radius = abs(tap.a);
             float covers = clamp(radius - distance + 0.5, 0.0, 1.0);

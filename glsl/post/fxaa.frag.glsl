@@ -35,9 +35,11 @@ float subpixel_shift(float contrast) {
 
 bool edge_is_horizontal() {
     float across_rows = abs(lumas[6] - 2.0 * lumas[3] + lumas[0])
-        + 2.0 * abs(lumas[7] - 2.0 * lumas[4] + lumas[1]) + abs(lumas[8] - 2.0 * lumas[5] + lumas[2]);
+        + 2.0 * abs(lumas[7] - 2.0 * lumas[4] + lumas[1])
+        + abs(lumas[8] - 2.0 * lumas[5] + lumas[2]);
     float across_columns = abs(lumas[6] - 2.0 * lumas[7] + lumas[8])
-        + 2.0 * abs(lumas[3] - 2.0 * lumas[4] + lumas[5]) + abs(lumas[0] - 2.0 * lumas[1] + lumas[2]);
+        + 2.0 * abs(lumas[3] - 2.0 * lumas[4] + lumas[5])
+        + abs(lumas[0] - 2.0 * lumas[1] + lumas[2]);
     return across_rows >= across_columns;
 }
 

@@ -16,7 +16,8 @@ shared float histograms[HISTOGRAM_BUCKETS][COLUMNS];
 
 float bucket_position(vec3 radiance) {
     float brightness = luminance(radiance);
-    float ev = brightness > BLACK ? log2(brightness) : log2(BLACK);  // what is no number counts as black
+    // What is no number counts as black.
+    float ev = brightness > BLACK ? log2(brightness) : log2(BLACK);
     float scaled = (ev - u_exposure.log_min) / u_exposure.log_range;
     return clamp(scaled, 0.0, 1.0) * float(HISTOGRAM_BUCKETS - 1u);
 }

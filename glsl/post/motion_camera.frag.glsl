@@ -14,5 +14,6 @@ void main() {
     vec4 now_cs = vec4(2.0 * vec3(gl_FragCoord.xy / size, depth) - 1.0, 1.0);
     vec4 p_ws = u_view.world_from_clip * now_cs;
     vec4 before_cs = u_motion.prev_clip_from_world * p_ws;
-    o_motion = vec4(half_streak(now_cs, before_cs / p_ws.w, size), min(linear_depth(depth), HALF_MAX), 0.0);
+    o_motion = vec4(half_streak(now_cs, before_cs / p_ws.w, size),
+                    min(linear_depth(depth), HALF_MAX), 0.0);
 }

@@ -89,7 +89,8 @@ void main() {
     }
     vec3 radiance = v_exposure * scene_radiance(pixel, size, noise.yz * u_film.grain_jitter_px);
 #if BLOOM
-    vec3 bloom = textureLod(u_bloom, gl_FragCoord.xy * 0.5 / vec2(textureSize(u_bloom, 0)), 0.0).rgb;
+    vec3 bloom = textureLod(u_bloom, gl_FragCoord.xy * 0.5 / vec2(textureSize(u_bloom, 0)),
+                            0.0).rgb;
 #if DIRT
     bloom += bloom * u_film.dirt_tint * textureLod(u_dirt, gl_FragCoord.xy / size, 0.0).rgb;
 #endif

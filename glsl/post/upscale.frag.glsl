@@ -8,8 +8,10 @@ out vec4 o_color;
 
 vec4 catmull_rom(float t) {
     vec4 powers = vec4(1.0, t, t * t, t * t * t);
-    return 0.5 * vec4(dot(powers, vec4(0.0, -1.0, 2.0, -1.0)), dot(powers, vec4(2.0, 0.0, -5.0, 3.0)),
-                      dot(powers, vec4(0.0, 1.0, 4.0, -3.0)), dot(powers, vec4(0.0, 0.0, -1.0, 1.0)));
+    return 0.5 * vec4(dot(powers, vec4(0.0, -1.0, 2.0, -1.0)),
+                      dot(powers, vec4(2.0, 0.0, -5.0, 3.0)),
+                      dot(powers, vec4(0.0, 1.0, 4.0, -3.0)),
+                      dot(powers, vec4(0.0, 0.0, -1.0, 1.0)));
 }
 
 void main() {

@@ -65,7 +65,8 @@ void main() {
     vec3 n = unit(mat3(instance.normal_from_local) * load_surface(at));
     vec3 t = linear * load_surface(at + 3u);
     t -= n * dot(n, t);
-    if (dot(t, t) <= 1e-12) t = cross(n, abs(n.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0));
+    if (dot(t, t) <= 1e-12)
+        t = cross(n, abs(n.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0));
     t = normalize(t);
     vec3 b = cross(n, t);
     vec2 uv0 = vec2(surface[at + 7u], surface[at + 8u]);

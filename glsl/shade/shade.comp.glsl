@@ -56,7 +56,8 @@ void main() {
     float depth = texelFetch(u_depth, pixel, 0).r;
     if (depth == DEPTH_CLEAR) {
 #if SKY
-        imageStore(u_scene_color, pixel, vec4(min(sky_radiance(eye_ray_ws(uv), 0.0), HALF_MAX), 0.0));
+        imageStore(u_scene_color, pixel,
+                   vec4(min(sky_radiance(eye_ray_ws(uv), 0.0), HALF_MAX), 0.0));
 #endif
         return;
     }

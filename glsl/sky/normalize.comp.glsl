@@ -41,7 +41,8 @@ void main() {
         barrier();
     }
     vec3 level_mean = sums[0].rgb / sums[0].a;
-    vec3 gain = mix(u_pass.mean / max(level_mean, vec3(1e-30)), vec3(1.0), equal(level_mean, vec3(0.0)));
+    vec3 gain = mix(u_pass.mean / max(level_mean, vec3(1e-30)), vec3(1.0),
+                    equal(level_mean, vec3(0.0)));
     for (uint i = thread; i < u_pass.size * u_pass.size; i += 256u) {
         ivec2 texel = ivec2(i % u_pass.size, i / u_pass.size);
         imageStore(u_level, texel, vec4(imageLoad(u_level, texel).rgb * gain, 1.0));

@@ -26,7 +26,8 @@ void main() {
     float content = float(u_pass.size) - 2.0;
     vec2 p = octahedral_fold((vec2(texel) - 0.5) / content * 2.0 - 1.0);
     vec3 axis = octahedral_decode(p);
-    vec3 side = normalize(abs(axis.y) < 0.9 ? cross(axis, vec3(0.0, 1.0, 0.0)) : cross(axis, vec3(1.0, 0.0, 0.0)));
+    vec3 side = normalize(abs(axis.y) < 0.9 ? cross(axis, vec3(0.0, 1.0, 0.0))
+                          : cross(axis, vec3(1.0, 0.0, 0.0)));
     vec3 up = cross(side, axis);
     float cap = 1.0 - cos(u_pass.half_angle);
     vec3 sum = vec3(0.0);

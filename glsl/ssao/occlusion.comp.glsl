@@ -36,7 +36,8 @@ float open_share(ivec2 texel, float z) {
         if (offset == ivec2(0)) continue;
         for (int side = -1; side <= 1; side += 2) {
             ivec2 at = texel + side * offset;
-            if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, u_ssao.half_size))) continue;
+            if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, u_ssao.half_size)))
+                continue;
             float sample_z = texelFetch(u_half_z, at, 0).r;
             vec3 to_sample = position_vs(at, sample_z) - p;
             sum += sample_z > 0.0 ? open_angle(to_sample, normal, u_ssao.bias, radius_m) : 1.0;

@@ -30,7 +30,8 @@ const float PLANE_TOLERANCE = 0.02;
 const float LEAST_SIMILARITY = 1e-4;
 
 float smooth_open(ivec2 pixel, float z) {
-    vec3 n_vs = mat3(u_view.view_from_world) * normal10_decode(texelFetch(u_gbuffer_a, pixel, 0).xyz);
+    vec3 n_vs = mat3(u_view.view_from_world)
+        * normal10_decode(texelFetch(u_gbuffer_a, pixel, 0).xyz);
     vec2 ray_step = 2.0 * u_view.viewport_px.zw * u_ssao.view_ray;
     vec3 ray = vec3((vec2(pixel) + 0.5) * ray_step - u_ssao.view_ray, -1.0);
     float own_plane = z * dot(ray, n_vs);

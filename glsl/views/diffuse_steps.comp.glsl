@@ -24,7 +24,8 @@ void main() {
         vec3 normal = normal10_decode(texelFetch(u_gbuffer_a, pixel, 0).xyz);
         vec3 p_ws = position_ws_at((vec2(pixel) + 0.5) * u_view.viewport_px.zw, depth);
         for (int group = 0; group < CONE_COUNT; ++group) diffuse_cone(p_ws, normal, group);
-        for (int i = 0; i < CONE_COUNT * CONE_SPLIT; ++i) cones += int(cone_weight(normal, CONE_DIRECTIONS[i]) > 0.0);
+        for (int i = 0; i < CONE_COUNT * CONE_SPLIT; ++i)
+            cones += int(cone_weight(normal, CONE_DIRECTIONS[i]) > 0.0);
     }
     imageStore(o_image, pixel, vec4(steps_color(cone_steps, cones, STEPS_WHITE), 1.0));
 }

@@ -13,7 +13,8 @@ void main() {
 #if SOURCE == SOURCE_UINT
     uvec4 words = inside ? uvec4(texelFetch(u_source, u_inspect.probe, 0)) : uvec4(0u);
 #elif SOURCE == SOURCE_UINT_3D
-    uvec4 words = inside ? uvec4(texelFetch(u_source, ivec3(u_inspect.probe, u_inspect.slice), 0)) : uvec4(0u);
+    uvec4 words = inside ? uvec4(texelFetch(u_source, ivec3(u_inspect.probe, u_inspect.slice), 0))
+        : uvec4(0u);
 #else
     uvec4 words = uvec4(0u);
 #endif

@@ -35,7 +35,8 @@ void main() {
     for (int i = 0; i < WALK_STEPS_MAX && walk_inside(walk); ++i) {
         int reached;
         Node node = find_node(walk.point >> 1u, walk.level, reached);
-        uint held = node_answers(node, reached, walk.level) ? bricks[node_brick(node)].node >> BRICK_POINTS_SHIFT : 0u;
+        uint held = node_answers(node, reached, walk.level)
+            ? bricks[node_brick(node)].node >> BRICK_POINTS_SHIFT : 0u;
 #if REGIONS
         uvec3 odd = (walk.point >> uint(walk.level - reached)) & 1u;
         held &= 1u << (odd.x | (odd.y << 1) | (odd.z << 2));

@@ -22,8 +22,10 @@ const float FILL_LAST = 0.9;
 // In use or asked for, and capacity.
 vec2 pool_use(int pool) {
     if (pool == 0) return vec2(octree_state.fragment_count, u_octree.fragment_capacity);
-    if (pool == 1) return vec2(octree_state.tile_count + octree_state.tile_dropped, u_octree.tile_capacity);
-    if (pool == 2) return vec2(octree_state.brick_count + octree_state.brick_dropped, u_octree.brick_capacity);
+    if (pool == 1)
+        return vec2(octree_state.tile_count + octree_state.tile_dropped, u_octree.tile_capacity);
+    if (pool == 2)
+        return vec2(octree_state.brick_count + octree_state.brick_dropped, u_octree.brick_capacity);
     if (pool == 3) return vec2(octree_state.leaf_asked, u_octree.leaf_capacity);
     return vec2(octree_state.interior_asked, u_octree.interior_capacity);
 }
@@ -37,7 +39,8 @@ void main() {
     if (abs(fract(row) - 0.5) < 0.5 - GAP) {
         vec2 use = pool_use(int(row));
         float fill = use.x / max(use.y, 1.0);
-        color = uv.x >= fill ? UNUSED : fill > 1.0 ? OVERFLOWED : false_color(mix(FILL_FIRST, FILL_LAST, fill));
+        color = uv.x >= fill ? UNUSED : fill > 1.0 ? OVERFLOWED
+            : false_color(mix(FILL_FIRST, FILL_LAST, fill));
     }
     imageStore(o_image, pixel, vec4(color, 1.0));
 }

@@ -31,11 +31,13 @@ vec3 channel_color(GBufferSurface s, float depth) {
     if (CHANNEL == CHANNEL_NORMAL) return s.normal_ws * 0.5 + 0.5;
     if (CHANNEL == CHANNEL_DIFFUSE) return srgb_encode(s.albedo);
     if (CHANNEL == CHANNEL_SPECULAR) return srgb_encode(s.specular_color);
-    if (CHANNEL == CHANNEL_SPECULAR_POWER) return false_color(specular_power_encode(s.specular_power));
+    if (CHANNEL == CHANNEL_SPECULAR_POWER)
+        return false_color(specular_power_encode(s.specular_power));
     if (CHANNEL == CHANNEL_AO) return vec3(s.ambient_occlusion);
     if (CHANNEL == CHANNEL_DECAL_MASK) return vec3(s.decal_mask);
     if (CHANNEL == CHANNEL_SUBSURFACE) return srgb_encode(s.subsurface_color);
-    if (CHANNEL == CHANNEL_LIGHTING_MODEL) return false_color(float(s.lighting_model) / LIGHTING_MODEL_SCALE);
+    if (CHANNEL == CHANNEL_LIGHTING_MODEL)
+        return false_color(float(s.lighting_model) / LIGHTING_MODEL_SCALE);
     // Near is bright: logarithmic over the camera's range, so that both ends can be told apart.
     float distance_m = linear_depth(depth);
     return false_color(1.0 - log(distance_m / u_view.near) / log(u_view.far / u_view.near));

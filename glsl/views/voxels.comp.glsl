@@ -16,7 +16,8 @@ void main() {
     if (any(greaterThanEqual(pixel, ivec2(u_view.viewport_px.xy)))) return;
     VoxelWalk walk = begin_walk((vec2(pixel) + 0.5) * u_view.viewport_px.zw, u_voxel_view.level);
     // Towards the eye, or on the side that was asked for.
-    ViewOfVoxels view = view_of_voxels(u_voxel_view.ray.w > 0.0 ? u_voxel_view.ray.xyz : walk.direction);
+    ViewOfVoxels view = view_of_voxels(u_voxel_view.ray.w > 0.0 ? u_voxel_view.ray.xyz
+                                       : walk.direction);
     vec3 color = BACKGROUND;
     for (int i = 0; i < WALK_STEPS_MAX && walk_inside(walk); ++i) {
         int reached;
