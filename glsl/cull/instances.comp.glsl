@@ -1,13 +1,13 @@
 // Draw commands that are left with the instances that a view may see. Those of a command keep their
 // order, so that what is equally near is settled as without culling.
 //
-// STAGE 0: occluders, to be drawn first for their depth: instances seen in the last frame and still
-// in
-//          the frustum whose footprint is at least OCCLUDER_PX pixels for each triangle, or
-//          is not known as the eye's or the near plane cuts their box.
-// STAGE 1: those, and what their depth does not hide; notes what is seen for the frame after. STAGE
-// 2: what is in the frustum. [Wihlidal16 "Optimizing the Graphics Pipeline with Compute"], [Haar15
-// "GPU-Driven Rendering Pipelines"]
+// STAGE 0: occluders, to be drawn first for their depth: instances seen in the last frame and
+//          still in the frustum whose footprint is at least OCCLUDER_PX pixels for each triangle,
+//          or is not known as the eye's or the near plane cuts their box.
+// STAGE 1: those, and what their depth does not hide; notes what is seen for the frame after.
+// STAGE 2: what is in the frustum.
+// [Wihlidal16 "Optimizing the Graphics Pipeline with Compute"],
+// [Haar15 "GPU-Driven Rendering Pipelines"]
 #include "lib/dispatch.glsl"
 #include "lib/occlusion.glsl"
 #include "shared/culling.glsl"

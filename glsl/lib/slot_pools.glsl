@@ -30,8 +30,8 @@ struct SlotsOfBlock {
 SlotsOfBlock bricks_of_block(uint block, int level) {
     uint group = group_block(block / SCAN_BLOCKS);
     return SlotsOfBlock(brick_pool(level), block_bits(block), old_block_bits(block),
-                        block_rank(block).x,
-                        old_block_rank(block).x, kept_sums[block].x + kept_sums[group].x);
+                        block_rank(block).x, old_block_rank(block).x,
+                        kept_sums[block].x + kept_sums[group].x);
 }
 
 SlotsOfBlock tiles_of_block(uint block) {
