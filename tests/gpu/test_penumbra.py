@@ -39,7 +39,9 @@ def half_plane(light: Light, height: float = EDGE) -> Scene:
 def visibility(view: Rig, points: Array, normals: Array = UP) -> Array:
     view.begin()[0].execute()
     inputs = {"p": points, "n": np.broadcast_to(normals, points.shape)}
-    reads = {name: ref for name, ref in view.shadows.view_reads().items() if "profile" not in name}
+    reads = {
+        name: ref for name, ref in view.shadows.view_reads().items() if name != "u_light_shapes"
+    }
     body, defines = "light_visibility_in_view(0u, p, n)", {"SOFT_SHADOWS": int(view.shadows.soft)}
     return run_glsl(view.device, ["lib/shadow.glsl"], body, inputs, reads=reads, defines=defines)
 
