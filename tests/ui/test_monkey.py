@@ -21,7 +21,8 @@ LEFT_ALONE = {"menu/screenshot", "menu/close", "menu/reload", "menu/save",
 VERBS = (
     "undo", "redo", "pause", "step", "hud", "help", "pixel", "view.next", "panel", "quit", "revert",
     "layout.reset", "scale 1.25", "scale 1.0", "page Volumes", "page Materials", "page Lights",
-    "page Settings", "page Graph", "page Buffers", "page Exposure", "page Sequence", "page Log",
+    "page Regions", "page Settings", "page Graph", "page Buffers", "page Exposure", "page Sequence",
+    "page Log",
 )  # fmt: skip
 KEYS = (imgui.Key.enter, imgui.Key.escape, imgui.Key.tab, imgui.Key.backspace)
 

@@ -25,7 +25,6 @@ from elemental.scene.model import (
     Light,
     Material,
     Mesh,
-    Region,
     Scene,
     TextureSlot,
     unique_name,
@@ -33,6 +32,7 @@ from elemental.scene.model import (
 from elemental.scene.motion import RigBuilder
 from elemental.scene.named_files import check_volume_files
 from elemental.scene.photometry import solid_angle
+from elemental.scene.regions import idle_regions, regions_of
 from elemental.scene.scene_decals import stick
 from elemental.scene.scene_file import SceneFile, read_scene_file
 from elemental.scene.scene_materials import dress
@@ -82,12 +82,11 @@ def load_scene_file(path: Path, animation: str | None = None) -> Scene:
     scene.environment = _environment(file.environment, path) if file.environment else None
     scene.exposure_ev = file.exposure_ev
     scene.camera_path = _camera_path(file.camera_path) if file.camera_path else None
-    scene.regions = [
-        Region(_vec(region.min), _vec(region.max), region.level_offset) for region in file.regions
-    ]
+    scene.regions = regions_of(file.regions)
     scene.volumes = volumes_of(file.volumes, path)
     check_volume_files(scene.volumes, path)
     scene.warnings += [*idle_keys(file, path), *covered_models(file, path)]
+    scene.warnings += idle_regions(scene.regions, scene.bounds(), path)
     return scene
 
 

@@ -22,6 +22,8 @@ from elemental.scene import toml_edit
 from elemental.scene.gltf import GLTF_SUFFIXES
 from elemental.scene.lights import Light
 from elemental.scene.load import SCENE_FILE_SUFFIX
+from elemental.scene.model import Region
+from elemental.scene.regions import with_regions
 from elemental.scene.save_names import move_files, relative, seen_from
 from elemental.scene.save_parts import MaterialChanges, put_lights, put_materials
 from elemental.scene.scene_file import flat_settings, parse_scene_file
@@ -42,6 +44,7 @@ class Changes:
     volumes: Sequence[Volume] | None = None
     lights: tuple[Sequence[Light], Sequence[Light]] | None = None
     materials: MaterialChanges | None = None
+    regions: Sequence[Region] | None = None
 
 
 def save_scene(opened: Path, target: Path, changes: Changes, folder: Path | None = None) -> None:
@@ -68,6 +71,8 @@ def save_scene(opened: Path, target: Path, changes: Changes, folder: Path | None
     if changes.volumes is not None:
         volumes = [replace(v, overrides=moved(v.overrides)) for v in changes.volumes]
         text = with_volumes(text, volumes, target)
+    if changes.regions is not None:
+        text = with_regions(text, changes.regions, target)
     parse_scene_file(text, target)
     with atomic_file(target.resolve()) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="")

@@ -30,7 +30,9 @@ if TYPE_CHECKING:
 IMAGES = (".png", ".jpg", ".jpeg", ".webp", ".exr", ".hdr")
 FILE_SUFFIXES = {"sky.image": (".hdr", ".exr"), "color_grading.lut": (".cube",)}
 """Of the files that a setting takes, where not any image."""
-PAGE_OF = {"volume": "Volumes", "light": "Lights", "material": "Materials"}
+PAGE_OF = {
+    "volume": "Volumes", "light": "Lights", "material": "Materials", "region": "Regions",
+}  # fmt: skip
 """The page on which a kind of thing is changed."""
 
 
@@ -206,6 +208,8 @@ def choose(desk: Desk, selection: Selection) -> None:
     kind, index = selection
     if kind == "volume":
         desk.pages.volumes.chosen = index
+    elif kind == "region":
+        desk.pages.regions.chosen = index
     elif kind in ("material", "light"):
         setattr(desk.pages, kind, index)
     if kind == "camera":

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from elemental.core.errors import InputError
-from elemental.scene.model import Light, Material
+from elemental.scene.model import Light, Material, Region
 from elemental.scene.volumes import Volume
 from elemental.settings import Settings
 
@@ -25,6 +25,7 @@ class State:
     materials: tuple[Material, ...] = ()
     lights: tuple[Light, ...] = ()
     volumes: tuple[Volume, ...] = ()
+    regions: tuple[Region, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -197,6 +198,15 @@ class Document:
         """Replace one of the volumes."""
         volumes = _with(self.state.volumes, index, volume)
         self.set_volumes(volumes, f"volume {volume.name}", gesture)
+
+    def set_regions(self, regions: tuple[Region, ...], label: str) -> None:
+        """Replace all regions of other voxels."""
+        self.edit(label, replace(self.state, regions=regions))
+
+    def set_region(self, index: int, region: Region, gesture: Hashable = None) -> None:
+        """Replace one of the regions."""
+        regions = _with(self.state.regions, index, region)
+        self.edit(f"region {index + 1}", replace(self.state, regions=regions), gesture)
 
 
 def _with(items: tuple[Any, ...], index: int, item: Any) -> tuple[Any, ...]:

@@ -26,7 +26,13 @@ REOPENING = frozenset({"scene.default_lights", "scene.animation", "sky.image"})
 def document_of(stage: Stage) -> Document:
     """The opened scene as a document; what --set assigned is not on disk."""
     scene = stage.scene
-    state = State(stage.settings, tuple(scene.materials), tuple(scene.lights), tuple(scene.volumes))
+    state = State(
+        stage.settings,
+        tuple(scene.materials),
+        tuple(scene.lights),
+        tuple(scene.volumes),
+        tuple(scene.regions),
+    )
     on_disk = replace(state, settings=own_settings(scene))
     return Document(state, on_disk)
 
@@ -47,7 +53,8 @@ class Applied:
         if after is before:
             return False
         changed = changed_keys(before.settings, after.settings)
-        if changed & REBUILDING and document.in_gesture:
+        rebuilds = changed & REBUILDING or after.regions is not before.regions
+        if rebuilds and document.in_gesture:
             return False
         self.state = after
         if changed & REOPENING:
@@ -58,6 +65,8 @@ class Applied:
             self.renderer.set_lights(after.lights)
         if after.volumes is not before.volumes:
             self.renderer.scene.volumes = list(after.volumes)
+        if after.regions is not before.regions:
+            self.renderer.set_regions(after.regions)
         for index, (old, new) in enumerate(zip(before.materials, after.materials, strict=True)):
             if not same(old, new):
                 self._set_material(index, old, new)
@@ -93,6 +102,7 @@ def save(document: Document, scene: Scene, target: Path) -> None:
     changes = Changes(
         settings={key: state.settings[key] for key in keys},
         volumes=None if same(state.volumes, saved.volumes) else state.volumes,
+        regions=None if same(state.regions, saved.regions) else state.regions,
         lights=None if same(state.lights, saved.lights) else (saved.lights, state.lights),
         materials=(
             None

@@ -54,7 +54,7 @@ class Observers:
         """For how many frames in a row the report has been wanted."""
 
     def want(self, what: str) -> None:
-        """Have the "report", "buffer", "eye", "pixel" or "volumes" with this frame."""
+        """Have the "report", "buffer", "eye", "pixel", "volumes" or "regions" with this frame."""
         self._wants.add(what)
 
     def wants(self, what: str) -> bool:

@@ -23,6 +23,7 @@ from elemental.ui.panel.lights import lights_page
 from elemental.ui.panel.log import COLORS, LogFilter, log_page
 from elemental.ui.panel.materials import materials_page
 from elemental.ui.panel.menu import MenuState, menu_bar
+from elemental.ui.panel.regions import RegionView, as_box, from_box, regions_page
 from elemental.ui.panel.scene import Selection, scene_page
 from elemental.ui.panel.sequence import DEFAULT, sequence_page
 from elemental.ui.panel.settings import settings_page
@@ -50,6 +51,7 @@ class PageState:
     buffers: BufferView = field(default_factory=BufferView)
     graph: GraphView = field(default_factory=GraphView)
     volumes: VolumeView = field(default_factory=VolumeView)
+    regions: RegionView = field(default_factory=RegionView)
     material: int = 0
     light: int = 0
     sequence: SequenceWords = DEFAULT
@@ -84,6 +86,10 @@ def pages_of(desk: Desk) -> list[Page]:
     def lights(w: Widgets) -> None:
         state.light = lights_page(w, state.light, desk.document, images_of(desk))
 
+    def regions(w: Widgets) -> None:
+        observers.want("regions")
+        regions_page(w, state.regions, desk.document, (desk.extent.low, desk.extent.high))
+
     def exposure(w: Widgets) -> None:
         observers.want("eye")
         parts = desk.document.state
@@ -116,6 +122,7 @@ def pages_of(desk: Desk) -> list[Page]:
         Page("Volumes", "right", volumes),
         Page("Materials", "right", materials),
         Page("Lights", "right", lights),
+        Page("Regions", "right", regions),
         Page("Timeline", "bottom", timeline),
         Page("Graph", "bottom", graph),
         Page("Buffers", "bottom", buffers),
@@ -162,6 +169,8 @@ def overlays(desk: Desk, place: Rect) -> None:
     """What stands over the picture."""
     if desk.observers.wants("volumes"):
         _volumes_in_view(desk, place)
+    elif desk.observers.wants("regions"):
+        _regions_in_view(desk, place)
     if desk.shows_pixel:
         _pixel_in_view(desk, place)
     if desk.shows_hud and not desk.shows_help and desk.frame is not None:
@@ -182,6 +191,20 @@ def _volumes_in_view(desk: Desk, place: Rect) -> None:
         dragged = draw_gizmo(lens, volumes[view.chosen], view.gizmo)
         if dragged is not None:
             document.set_volume(view.chosen, dragged, ("gizmo", view.chosen))
+
+
+def _regions_in_view(desk: Desk, place: Rect) -> None:
+    """Outlines of the regions, and the gizmo on the chosen one."""
+    view, document = desk.pages.regions, desk.document
+    regions = document.state.regions
+    lens = Lens.of(desk.camera, (desk.extent.low, desk.extent.high), place)
+    boxes = [as_box(region, number) for number, region in enumerate(regions)]
+    draw_volumes(lens, boxes, view.chosen)
+    if view.chosen < len(regions):
+        dragged = draw_gizmo(lens, boxes[view.chosen], view.gizmo)
+        if dragged is not None:
+            moved = from_box(dragged, regions[view.chosen].level_offset)
+            document.set_region(view.chosen, moved, ("gizmo", view.chosen))
 
 
 def _pixel_in_view(desk: Desk, place: Rect) -> None:

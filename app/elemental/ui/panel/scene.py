@@ -14,7 +14,7 @@ from elemental.ui import icons
 from elemental.ui.document import State
 from elemental.ui.widgets import Widgets
 
-Kind = Literal["model", "light", "camera", "volume", "material"]
+Kind = Literal["model", "light", "camera", "volume", "material", "region"]
 Selection = tuple[Kind, int]
 """What is chosen in the panel: of which kind, which one."""
 
@@ -56,6 +56,7 @@ def scene_page(
         ("Lights", "light", icons.LAMP, [light.name for light in state.lights]),
         ("Cameras", "camera", icons.CAMERA, [camera.name for camera in scene.cameras]),
         ("Materials", "material", icons.MATERIAL, [m.name for m in state.materials]),
+        ("Regions", "region", icons.VOLUME, [f"region {k + 1}" for k in range(len(state.regions))]),
         ("Models", "model", icons.MODEL, [instance.name for instance in scene.instances]),
     )
     for title, kind, icon, names in branches:
