@@ -69,6 +69,7 @@ float exit_distance(vec3 p, vec3 inverse_direction, vec3 direction, vec3 cell, f
 struct ConeSample {
     vec4 value;       // premultiplied radiance, opacity
     float empty_exit; // > 0: nothing up to there
+    float leaf;       // finest voxels along one of a coarser region's leaves that was sampled, else 0
 };
 
 // Both levels around a fractional one with a single descent. p in finest voxels. One place looks sides up
@@ -86,7 +87,7 @@ ConeSample cone_sample(vec3 p, float lod, vec3 direction, vec3 inverse_direction
         uint empty_shift = is_empty ? uint(u_octree.leaf_level - int(node.child) + 1) : reached_shift;
         vec3 empty_cell = vec3(voxel >> empty_shift);
         float size = float(1u << empty_shift);
-        return ConeSample(vec4(0.0), exit_distance(p, inverse_direction, direction, empty_cell, size));
+        return ConeSample(vec4(0.0), exit_distance(p, inverse_direction, direction, empty_cell, size), 0.0);
     }
     vec3 local = p / float(1u << reached_shift) - vec3(voxel >> reached_shift);
     bool dense_child = coarse < u_octree.top_level;
@@ -95,17 +96,18 @@ ConeSample cone_sample(vec3 p, float lod, vec3 direction, vec3 inverse_direction
     float share = is_leaf ? 1.0 : lod - float(mip);  // of the coarse level
     vec4 value = share > 0.0 ? share * sides_lookup(node, local, view) : vec4(0.0);
     uvec3 child_cell = voxel >> (shift - 1u);
-    if (is_leaf || (!dense_child && node.child == NODE_HOLLOW)) return ConeSample(value, 0.0);
+    float leaf = is_leaf ? 0.5 * float(1u << reached_shift) : 0.0;
+    if (is_leaf || (!dense_child && node.child == NODE_HOLLOW)) return ConeSample(value, 0.0, leaf);
     Node child = nodes[dense_child ? dense_node(coarse + 1, child_cell) : child_node(node.child, child_cell)];
     if (node_has_brick(child)) {
         vec3 child_local = local * 2.0 - vec3(child_cell & 1u);
         value += (1.0 - share) * node_lookup(child, coarse + 1, child_local, view);
     }
-    return ConeSample(value, 0.0);
+    return ConeSample(value, 0.0, 0.0);
 }
 
-// Height over the plane of a surface at which a cone ends: finest voxels at the start, and a voxel of
-// the way. Samples stay CLEARANCE_VOXELS of their own widths above it; a cone near the plane takes
+// Height over the plane of a surface at which a cone ends: m at the start, and m a metre of the way.
+// Samples stay CLEARANCE_VOXELS of their own widths above it; a cone near the plane takes
 // narrower ones, or it would find the surface that it comes from and darken it. [inferred]
 struct Clearance {
     float start;
@@ -116,12 +118,13 @@ struct Clearance {
 #define CLEARANCE 4.0
 #endif
 const float CLEARANCE_VOXELS = CLEARANCE;
-// Up to here voxels belong to the surface that a cone leaves, or to one that meets it at an edge: a cone
+// Voxels: up to here they belong to the surface that a cone leaves, or to one that meets it at an edge: a cone
 // that sees their backs came out of them, and passes.
 const float NEAR_VOXELS = 2.0;
 const Clearance NO_SURFACE = Clearance(1e9, 0.0);
 
-float height_at(Clearance c, float t) { return c.start + c.slope * t; }
+// In finest voxels, as t is.
+float height_at(Clearance c, float t) { return c.start / u_octree.voxel_m + c.slope * t; }
 
 // What a march along a cone gathers between two distances from Pos, which is in world space.
 // ConeAngle: half the aperture in radians. Radiance, and how much is hidden. The cone's samples stay
@@ -139,31 +142,33 @@ vec4 cone_trace_between(vec3 Pos, vec3 Direction, float ConeAngle, float start_m
     float end = end_m / u_octree.voxel_m;
     vec4 gathered = vec4(0.0);
     Run run = Run(0.0, 0.0, 0.0, 1.0);
+    float own_voxels = leaf_voxels(Pos);
     float gap = 0.0;  // voxels since the last sample, clear nodes left out
     for (int i = 0; i < CONE_STEPS_MAX && t < end; ++i) {
 #if COUNT_CONE_STEPS
         ++cone_steps;
 #endif
         float height = height_at(leaves, t);
-        view.own = clamp(NEAR_VOXELS + 1.0 - min(height, t), 0.0, 1.0);
+        view.own = clamp(NEAR_VOXELS + 1.0 - min(height, t) / own_voxels, 0.0, 1.0);
         height = min(height, height_at(reaches, t));
         float width = max(min(widening * t / CONE_FOOTPRINT, height / CLEARANCE_VOXELS), 1.0);
         vec3 p = origin + Direction * t;
         if (any(lessThan(p, vec3(0.0))) || any(greaterThanEqual(p, vec3(side)))) break;
         float lod = min(log2(width), lod_last);
         ConeSample s = cone_sample(p, lod, guarded, inverse_direction, view);
+        float sampled = max(width, s.leaf);
         if (s.value.a < CONE_CLEAR) {
-            float clear_step = width * CONE_STEP_CLEAR;
+            float clear_step = sampled * CONE_STEP_CLEAR;
             float way = s.empty_exit > 0.0 ? max(s.empty_exit + CONE_SKIP_EPSILON, width * CONE_STEP) : clear_step;
-            gap = min(way - s.empty_exit, clear_step) / width;
+            gap = min(way - s.empty_exit, clear_step) / sampled;
             t += way;
             run = Run(0.0, 0.0, 0.0, 1.0 - gathered.a);
             continue;
         }
-        float fresh = extend(run, s.value.a, 0.5 * (gap + CONE_STEP), lod);
+        float fresh = extend(run, s.value.a, 0.5 * (gap + CONE_STEP), s.leaf > 0.0 ? 1.0 : lod);
         gathered += fresh * vec4(s.value.rgb / s.value.a, 1.0);
         gap = CONE_STEP;
-        t += width * CONE_STEP;
+        t += sampled * CONE_STEP;
         if (gathered.a > CONE_OPAQUE) {
             gathered /= gathered.a;
             break;

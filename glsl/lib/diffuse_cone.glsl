@@ -4,7 +4,7 @@
 #include "lib/cone_directions.glsl"
 #include "lib/sky.glsl"
 
-// The march starts so many finest voxels off the surface: more, and it starts inside of what stands close
+// The march starts so many voxels off the surface: more, and it starts inside of what stands close
 // over it, as under the bulge of a ring that lies on a floor.
 const float DIFFUSE_NORMAL_BIAS = 0.5;
 const float DIFFUSE_START = 1.0;
@@ -20,10 +20,10 @@ const float SKY_HALF_ANGLE = 1.4 * CONE_HALF_ANGLE;
 
 // (radiance, visibility of the sky) of a single cone.
 vec4 narrow_cone(vec3 p_ws, vec3 normal, vec3 direction) {
-    float voxel = u_octree.voxel_m;
+    float voxel = leaf_voxel_m(p_ws);
     float elevation = max(dot(normal, direction), LEAST_ELEVATION);
     vec3 lifted = normalize(direction + normal * (elevation - dot(normal, direction)));
-    Clearance clearance = Clearance(DIFFUSE_NORMAL_BIAS, dot(normal, lifted));
+    Clearance clearance = Clearance(DIFFUSE_NORMAL_BIAS * voxel, dot(normal, lifted));
     vec3 origin = p_ws + normal * (DIFFUSE_NORMAL_BIAS * voxel);
     vec4 traced = cone_trace_above(origin, lifted, CONE_HALF_ANGLE, DIFFUSE_START * voxel, clearance);
     float visible = 1.0 - traced.a;

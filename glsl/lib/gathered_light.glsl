@@ -36,6 +36,6 @@ vec3 gathered_diffuse(vec3 p_ws, vec3 normal) {
 // Radiance of the octree and the sky along a ray that comes out of a body.
 vec3 gathered_radiance(vec3 origin, vec3 direction, float half_angle) {
     float wide = max(half_angle, 0.01);  // rad: narrower ones cost steps and show no more
-    vec4 traced = cone_trace_from(origin, direction, wide, u_octree.voxel_m);
+    vec4 traced = cone_trace_from(origin, direction, wide, leaf_voxel_m(origin));
     return traced.rgb + (1.0 - traced.a) * sky_radiance(direction, half_angle);
 }

@@ -53,6 +53,20 @@ bool inside_octree(vec3 p_oct) {
     return all(greaterThanEqual(p_oct, vec3(0.0))) && all(lessThan(p_oct, vec3(1.0)));
 }
 
+// Finest voxels along a voxel of the leaves around a point: more than one in a coarser region.
+float leaf_voxels(vec3 p_ws) {
+    if (u_octree.coarsest_leaf == u_octree.leaf_level) return 1.0;
+    int side = int(REGION_SIDE);
+    ivec3 at = ivec3(floor(octree_from_world(p_ws) * float(2 * side))) - side / 2;
+    at = clamp(at, 0, side - 1);
+    uint region = uint(at.x + side * (at.y + side * at.z));
+    uint word = u_octree.coarser_leaves[region >> 6u][(region >> 4u) & 3u];
+    return float(1u << ((word >> (2u * (region & 15u))) & 3u));
+}
+
+// Metres between the voxels of those leaves.
+float leaf_voxel_m(vec3 p_ws) { return leaf_voxels(p_ws) * u_octree.voxel_m; }
+
 // World position and wanted level -> node, local position, level reached. p_ws inside the cube.
 NodeLocation octree_locate(vec3 p_ws, int wanted_level) {
     vec3 p_oct = octree_from_world(p_ws);

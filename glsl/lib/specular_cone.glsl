@@ -7,7 +7,7 @@
 #include "lib/sky.glsl"
 #include "lib/view.glsl"
 
-// Finest voxels off the surface along the normal, and along the cone.
+// Voxels off the surface along the normal, and along the cone.
 const float SPECULAR_NORMAL_BIAS = 1.0;
 const float SPECULAR_START = 1.0;
 // Voxels before and behind an area light in which its own voxels would hide it.
@@ -20,9 +20,9 @@ vec4 specular_cone(vec3 p_ws, vec3 normal, float half_angle) {
     vec3 direction = reflect(eye, normal);
     // A mirrored ray of a shading normal may point into the surface.
     direction = normalize(direction + normal * max(0.0, 0.02 - dot(direction, normal)));
-    float voxel = u_octree.voxel_m;
+    float voxel = leaf_voxel_m(p_ws);
     vec3 origin = p_ws + normal * (SPECULAR_NORMAL_BIAS * voxel);
-    Clearance clearance = Clearance(SPECULAR_NORMAL_BIAS, dot(direction, normal));
+    Clearance clearance = Clearance(SPECULAR_NORMAL_BIAS * voxel, dot(direction, normal));
     float depth = AREA_LIGHT_DEPTH * voxel;
     float from = SPECULAR_START * voxel;
     vec4 cone = vec4(0.0);

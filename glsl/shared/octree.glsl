@@ -136,4 +136,5 @@ layout(std140) uniform Octree {
     uvec4 slot_capacity;     // of each slot pool
     vec3 atlas_texel;      // 1 / size in texels
     vec3 leaf_atlas_texel;
+    uvec4 coarser_leaves[8]; // two bits a region, x fastest: levels that its leaves are above the finest
 } u_octree;

@@ -95,6 +95,14 @@ class Grid:
         return int(self.region_levels.min())
 
     @property
+    def coarser_leaves(self) -> npt.NDArray[np.uint32]:
+        """(8, 4) uint32: two bits a region, x fastest, of how many levels its leaves are above the
+        finest: `Octree.coarser_leaves` of glsl/shared/octree.glsl."""
+        above = (self.leaf_level - self.region_levels).reshape(8, 4, 16)
+        shifts = 2 * np.arange(16, dtype=np.uint32)
+        return np.bitwise_or.reduce(above.astype(np.uint32) << shifts, axis=2)
+
+    @property
     def one_leaf_level(self) -> bool:
         """Whether all regions have the finest."""
         return self.coarsest_leaf == self.leaf_level

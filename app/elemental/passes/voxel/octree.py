@@ -210,6 +210,7 @@ class Survey:
             slot_capacity=capacity.slots(grid.one_leaf_level) if self.keeps_slots else (0,) * 4,
             atlas_texel=sided.texel,
             leaf_atlas_texel=leaf.texel,
+            coarser_leaves=grid.coarser_leaves,
         )
 
     def _listed_voxels(self) -> int:
