@@ -100,7 +100,8 @@ class Grid:
         finest: `Octree.coarser_leaves` of glsl/shared/octree.glsl."""
         above = (self.leaf_level - self.region_levels).reshape(8, 4, 16)
         shifts = 2 * np.arange(16, dtype=np.uint32)
-        return np.bitwise_or.reduce(above.astype(np.uint32) << shifts, axis=2)
+        words: npt.NDArray[np.uint32] = np.bitwise_or.reduce(above.astype(np.uint32) << shifts, 2)
+        return words
 
     @property
     def one_leaf_level(self) -> bool:
