@@ -109,6 +109,23 @@ def mirrored(mesh: Mesh) -> Mesh:
     return replace(mesh, name=f"{mesh.name} (mirrored)", indices=indices, tangents=flipped)
 
 
+def flattened(mesh: Mesh, linear: FloatArray, tangent_uv_set: int | None) -> Mesh | None:
+    """The mesh after a (3, 3) matrix that takes its thickness, its facets' normals anew; None where
+    no triangle has an area left."""
+    primitive = Primitive(
+        positions=(mesh.positions.astype(np.float64) @ linear.T).astype(np.float32),
+        indices=mesh.indices,
+        uv0=mesh.uv0 if mesh.uv0.any() else None,
+        uv1=mesh.uv1 if mesh.uv1.any() else None,
+        colors=mesh.colors,
+    )
+    primitive, _ = drop_degenerate(primitive)
+    if not len(primitive.indices):
+        return None
+    primitive = drop_unused_vertices(primitive)
+    return complete(primitive, f"{mesh.name} (flat)", mesh.material, tangent_uv_set)
+
+
 def _corners(primitive: Primitive) -> npt.NDArray[np.float64]:
     """(3, T, 3) float64 positions of the triangles' corners."""
     triangles = primitive.indices.reshape(-1, 3).T

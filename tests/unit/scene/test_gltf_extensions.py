@@ -155,3 +155,18 @@ def test_unknown_optional_extension_is_one_warning(tmp_path: Path) -> None:
     builder.extend("ACME_curved_space")
     builder.extend("KHR_xmp_json_ld")
     assert len(builder.load(tmp_path).warnings) == 1
+
+
+def test_extensions_that_the_list_lacks_are_one_warning_each(tmp_path: Path) -> None:
+    builder = GltfBuilder()
+    instancing = {"EXT_mesh_gpu_instancing": {"attributes": {}}}
+    builder.add(TRIANGLE, extensions=instancing)
+    builder.add(TRIANGLE, extensions=instancing, extras={"extensions": {"ACME_secret": {}}})
+    sheen = {"KHR_materials_sheen": {}, "KHR_materials_ior": {"ior": 1.4}}
+    builder.append("materials", {"name": "silk", "extensions": sheen})
+    told = [warning.partition(": ")[2] for warning in builder.load(tmp_path).warnings]
+    assert sorted(told) == [
+        f"{place}.extensions: {name} is not supported and ignored; extensionsUsed lacks it"
+        for place, name in (("materials[0]", "KHR_materials_sheen"),
+                            ("nodes[0]", "EXT_mesh_gpu_instancing"))
+    ]  # fmt: skip

@@ -20,7 +20,7 @@ KTX2 = b"\xabKTX 20\xbb\r\n\x1a\n" + bytes(100)
 
 def load(builder: GltfBuilder, folder: Path, name: str = "scene.glb") -> tuple[Scene, Material]:
     """The scene with a triangle of the first material."""
-    builder.add(TRIANGLE, material=0)
+    builder.add(TRIANGLE, material=0, uv0=TRIANGLE[:, :2], uv1=TRIANGLE[:, :2])
     scene = builder.load(folder, name)
     return scene, scene.materials[0]
 
@@ -297,3 +297,16 @@ def test_third_texture_coordinates_are_a_warning(tmp_path: Path) -> None:
     scene, material = load(builder, tmp_path)
     assert material.base_color_texture is None
     assert "TEXCOORD_2 is not supported" in scene.warnings[0]
+
+
+def test_textures_on_a_mesh_without_their_coordinates_are_one_warning(tmp_path: Path) -> None:
+    builder = GltfBuilder()
+    texture = builder.texture(PIXELS)
+    builder.material(pbr={"baseColorTexture": {"index": texture}},
+                     emissiveTexture={"index": texture, "texCoord": 1})  # fmt: skip
+    uv = np.zeros((3, 2), np.float32)
+    builder.add(TRIANGLE, material=0, uv0=uv)
+    builder.add(TRIANGLE, material=0, uv0=uv)
+    told = [warning.partition(": ")[2] for warning in builder.load(tmp_path).warnings]
+    reason = "a mesh has no TEXCOORD_1: one texel of its textures is all it shows"
+    assert told == [f"materials[0]: {reason}"]

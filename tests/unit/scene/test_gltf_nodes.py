@@ -90,14 +90,54 @@ def test_without_scenes_every_root_is_placed(tmp_path: Path) -> None:
     assert [i.name for i in builder.load(tmp_path).instances] == ["child", "other"]
 
 
-@pytest.mark.parametrize("scale", [[0, 0, 0], [1, 1, 0], [1e-20, 1, 1]])
+@pytest.mark.parametrize("rotation", [[0, 0, 0, 1], [0.5, 0.5, 0.5, 0.5], [0.6, 0, 0, 0.8]])
+def test_a_scale_of_0_on_one_axis_leaves_a_sheet(rotation: list[float], tmp_path: Path) -> None:
+    """A ball becomes a disc of two faces; so does it below a mirroring parent."""
+    builder = GltfBuilder()
+    disc = builder.add(*shapes.sphere(), scale=[2, 2, 0], translation=[5, 0, 0], root=False)
+    builder.node(children=[disc], rotation=rotation, scale=[-1, 1, 1])
+    builder.add(TRIANGLE)
+    scene = builder.load(tmp_path)
+    assert "1 meshes are drawn flat, whose nodes have a scale of 0" in scene.notes[-1]
+    sheet = next(i for i in scene.instances if scene.meshes[i.mesh].name.endswith("(flat)"))
+    mesh, world = scene.meshes[sheet.mesh], sheet.world_from_local
+    turned = transforms.compose((0, 0, 0), rotation, (-1, 1, 1))
+    np.testing.assert_allclose(world[:3, 3], turned[:3, :3] @ (5, 0, 0), atol=1e-5)
+    a, b, c = mesh.positions[mesh.indices].reshape(-1, 3, 3).astype(float).transpose(1, 0, 2)
+    doubled = np.cross(b - a, c - a)
+    along = turned[:3, 2]
+    assert np.abs(doubled @ along).sum() / 2 == pytest.approx(2 * 4 * math.pi, rel=0.03)
+    assert np.abs(doubled.sum(axis=0)).max() < 1e-3  # as much of it faces either way
+    shown = np.linalg.norm(doubled, axis=1) > 1e-5
+    facing = (mesh.normals[mesh.indices].reshape(-1, 3, 3)[shown] @ along).mean(axis=1)
+    np.testing.assert_allclose(facing, np.sign(doubled[shown] @ along), atol=1e-3)
+
+
+def test_an_invisible_node_hides_all_below_but_cameras(tmp_path: Path) -> None:
+    builder = GltfBuilder()
+    hidden, shown = ({"KHR_node_visibility": {"visible": seen}} for seen in (False, True))
+    below = builder.add(TRIANGLE, root=False, name="below", extensions=shown)
+    lamp = builder.light("point", {"intensity": 3.0}, root=False)
+    eye = builder.camera(root=False)
+    builder.node(children=[below, lamp, eye], extensions=hidden)
+    builder.add(TRIANGLE, name="seen", extensions=shown)
+    builder.extend("KHR_node_visibility", required=True)
+    scene = builder.load(tmp_path)
+    assert [instance.name for instance in scene.instances] == ["seen"]
+    assert scene.lights == []
+    assert len(scene.cameras) == 1
+    assert scene.warnings == []
+    assert "1 meshes are left out, whose nodes are invisible" in scene.notes[0]
+
+
+@pytest.mark.parametrize("scale", [[0, 0, 0], [1, 0, 0], [1e-20, 1, 1]])
 def test_flattening_scale_leaves_the_mesh_out(scale: list[float], tmp_path: Path) -> None:
     builder = GltfBuilder()
     builder.add(TRIANGLE, scale=scale)
     builder.add(TRIANGLE)
     scene = builder.load(tmp_path)
     assert len(scene.instances) == 1
-    assert "1 meshes are left out, whose nodes have a scale of 0" in scene.notes[0]
+    assert "1 meshes are left out, whose scale of 0 leaves no area" in scene.notes[0]
 
 
 def test_lights(tmp_path: Path) -> None:

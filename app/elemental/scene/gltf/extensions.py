@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import Any
+
 from elemental.core.errors import InputError
 from elemental.scene.gltf.container import Document
+from elemental.scene.gltf.fields import printable
 
 SUPPORTED = frozenset({
     "EXT_texture_webp",
@@ -15,6 +19,7 @@ SUPPORTED = frozenset({
     "KHR_materials_unlit",
     "KHR_materials_volume",
     "KHR_mesh_quantization",
+    "KHR_node_visibility",
     "KHR_texture_transform",
 })  # fmt: skip
 
@@ -45,3 +50,29 @@ def check_extensions(document: Document) -> None:
             reason = f"{name} is not supported"
             raise InputError(document.path, required[name].path, reason)
         document.report.warn("extensionsUsed", f"{name} is not supported and ignored")
+    known = {*required, *used} | SUPPORTED | WARNED_WHERE_USED | WITHOUT_EFFECT
+    for name, place in _extended(root.raw).items():
+        if name not in known:
+            reason = f"{printable(name)} is not supported and ignored; extensionsUsed lacks it"
+            document.report.warn(place, reason)
+
+
+def _extended(root: Any) -> dict[str, str]:
+    """Each extension of any object of the JSON, and where it is met first."""
+    found: dict[str, str] = {}
+    pending: list[tuple[str, Any]] = [("", root)]
+    while pending:
+        place, value = pending.pop()
+        items: Iterable[tuple[str, Any]] = ()
+        if isinstance(value, dict):
+            items = ((f"{place}.{key}" if place else key, part) for key, part in value.items()
+                     if key != "extras")  # fmt: skip
+            extensions = value.get("extensions")
+            if isinstance(extensions, dict):
+                for name in extensions:
+                    found.setdefault(name, f"{place}.extensions" if place else "extensions")
+        elif isinstance(value, list):
+            items = ((f"{place}[{k}]", part) for k, part in enumerate(value))
+        holding = [item for item in items if isinstance(item[1], dict | list)]
+        pending += reversed(holding)
+    return found

@@ -185,11 +185,11 @@ class Field:
         found = self.find(key)
         return found.text() if found else default
 
-    def flag(self, key: str) -> bool:
-        """A boolean member; false where it is missing."""
+    def flag(self, key: str, default: bool = False) -> bool:
+        """A boolean member, or the default where it is missing."""
         found = self.find(key)
         if found is None:
-            return False
+            return default
         if not isinstance(found.raw, bool):
             raise found._expected("true or false")
         return found.raw

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from elemental.scene import mesh_attributes
+from elemental.scene.deform import deformed
 from elemental.scene.gltf import draco
 from elemental.scene.gltf.accessors import Accessors, normalize
 from elemental.scene.gltf.container import Document
@@ -42,6 +43,15 @@ class Meshes:
             copies = [mesh_attributes.mirrored(self.meshes[m]) for m in self._made[index, False]]
             self._made[index, True] = self._append(copies)
         return self._made[index, mirrored]
+
+    def flattened(self, index: int, linear: FloatArray, weights: FloatArray | None) -> int | None:
+        """Index of mesh `index` after (3, 3) `linear`, which flattens it; None: no area is left."""
+        mesh = self.meshes[index]
+        if weights is not None:
+            mesh = deformed(mesh, None, weights)
+        slot = self._materials[mesh.material].normal_texture
+        flat = mesh_attributes.flattened(mesh, linear, slot.uv_set if slot else None)
+        return None if flat is None else self._append([flat])[0]
 
     def _append(self, meshes: list[Mesh]) -> list[int]:
         first = len(self.meshes)
@@ -80,8 +90,20 @@ class Meshes:
         if not len(primitive.indices):
             return None
         primitive = mesh_attributes.drop_unused_vertices(primitive)
+        self._tell_of_missing_uv(primitive, material)
         slot = self._materials[material].normal_texture
         return mesh_attributes.complete(primitive, name, material, slot.uv_set if slot else None)
+
+    def _tell_of_missing_uv(self, primitive: Primitive, index: int) -> None:
+        material = self._materials[index]
+        textures = [p.name for p in material.definition.parameters if p.kind == "texture"]
+        slots = [material.texture(name) for name in textures]
+        for uv_set in sorted({slot.uv_set for slot in slots if slot is not None}):
+            if (primitive.uv0, primitive.uv1)[uv_set] is None:
+                reason = (
+                    f"a mesh has no TEXCOORD_{uv_set}: one texel of its textures is all it shows"
+                )
+                self._document.report.warn(f"materials[{index}]", reason)
 
     def _compressed(self, field: Field) -> draco.DracoPrimitive | None:
         """The Draco data of a primitive; None, perhaps with a warning, for the plain data."""

@@ -15,6 +15,7 @@ from elemental.scene.model import FloatArray
 from elemental.scene.motion import Path
 from elemental.scene.placement import mirrors, singular
 
+VISIBILITY = "KHR_node_visibility"
 AFFINE_ROW = (0.0, 0.0, 0.0, 1.0)
 AFFINE_TOLERANCE = 1e-5
 NOTHING_HELD: Mapping[tuple[int, Path], npt.NDArray[np.float64]] = {}
@@ -25,7 +26,7 @@ class PlacedNode:
     """A node that the scene shows, with its transform to the world.
 
     `place`: offset @ T @ R @ S in the frame of its parent, which is None for a root;
-    `world_from_parent` (4, 4) float64.
+    `world_from_parent` (4, 4) float64; `visible`: it and all above it are (KHR_node_visibility).
     """
 
     field: Field
@@ -34,6 +35,7 @@ class PlacedNode:
     place: Place
     parent: int | None
     world_from_parent: npt.NDArray[np.float64]
+    visible: bool
 
     def name_or(self, default: str) -> str:
         return self.field.text_or("name", default)
@@ -74,10 +76,10 @@ def placed_nodes(
     """
     nodes = document.root.elements("nodes")
     parents = _parents(nodes)
-    pending = [(root, np.eye(4)) for root in reversed(_roots(document, parents))]
+    pending = [(root, np.eye(4), True) for root in reversed(_roots(document, parents))]
     visited: set[int] = set()
     while pending:
-        index, world_from_parent = pending.pop()
+        index, world_from_parent, visible = pending.pop()
         node = nodes[index]
         if index in visited:
             raise node.error("is reached twice: a cycle, or a root that is also a child")
@@ -88,9 +90,11 @@ def placed_nodes(
             narrow = world_from_local.astype(np.float32)
         if not np.isfinite(narrow).all():
             raise node.error("its transform to the world overflows")
-        yield PlacedNode(node, index, narrow, place, parents[index], world_from_parent)
+        visibility = node.extension(VISIBILITY)
+        visible &= visibility is None or visibility.flag("visible", True)
+        yield PlacedNode(node, index, narrow, place, parents[index], world_from_parent, visible)
         children = [child.integer() for child in node.elements("children")]
-        pending += [(child, world_from_local) for child in reversed(children)]
+        pending += [(child, world_from_local, visible) for child in reversed(children)]
 
 
 def _parents(nodes: list[Field]) -> list[int | None]:

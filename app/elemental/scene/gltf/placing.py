@@ -39,9 +39,13 @@ class Placing:
         """Append what the nodes hold to the scene."""
         self._worlds = {node.index: node.world_from_local for node in nodes}
         for node in nodes:
-            self._place_meshes(node)
             self._place_camera(node)
-            self._place_light(node)
+            if node.visible:
+                self._place_meshes(node)
+                self._place_light(node)
+            elif node.field.find("mesh") is not None:
+                self._document.report.count("meshes are left out, whose nodes are invisible")
+                self._scene.hidden += 1
 
     def _place_meshes(self, node: PlacedNode) -> None:
         reference = node.field.find("mesh")
@@ -62,8 +66,7 @@ class Placing:
             if worn is not None:
                 node.field.warn("has a skin, but its mesh no JOINTS_0; the skin is ignored")
             if flat:
-                self._document.report.count("meshes are left out, whose nodes have a scale of 0")
-                self._scene.hidden += 1
+                self._place_flat(name, index, node, weights)
                 continue
             world = node.world_from_local
             if node.index in self._rig.morphing:
@@ -76,6 +79,18 @@ class Placing:
             if moves:
                 placed.dynamic, placed.node = True, self._rig.node(node.index)
             self._scene.instances.append(placed)
+
+    def _place_flat(self, name: str, index: int, node: PlacedNode, weights: F32 | None) -> None:
+        """A mesh without thickness, in the world's directions: matrices have to have inverses."""
+        linear, world = node.world_from_local[:3, :3], np.eye(4, dtype=np.float32)
+        world[:3, 3] = node.world_from_local[:3, 3]
+        flat = self._meshes.flattened(index, linear, weights)
+        if flat is None:
+            self._document.report.count("meshes are left out, whose scale of 0 leaves no area")
+            self._scene.hidden += 1
+            return
+        self._document.report.count("meshes are drawn flat, whose nodes have a scale of 0")
+        self._scene.instances.append(Instance(name, flat, world))
 
     def _place_skinned(
         self,
