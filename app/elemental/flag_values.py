@@ -64,8 +64,11 @@ def vector(text: str) -> tuple[float, float, float]:
         x, y, z = (float(part) for part in text.split(","))
     except ValueError:
         x = y = z = math.nan
-    if not all(abs(component) <= MAX_COORDINATE_M for component in (x, y, z)):
+    if any(math.isnan(component) for component in (x, y, z)):
         raise argparse.ArgumentTypeError(f"{text!r} is not X,Y,Z in metres")
+    if not all(abs(component) <= MAX_COORDINATE_M for component in (x, y, z)):
+        lo, hi = -MAX_COORDINATE_M, MAX_COORDINATE_M
+        raise argparse.ArgumentTypeError(f"{text!r}: coordinates are {lo:g} to {hi:g} metres")
     return x, y, z
 
 

@@ -209,16 +209,22 @@ def check_output(flag: str, path: Path, suffixes: tuple[str, ...]) -> None:
 
 FRAME_NUMBER = re.compile(r"%0?([0-9]{0,2})d")
 WIDER_NUMBER = re.compile(r"%[0-9]{3,}d")
+OTHER_CONVERSION = re.compile(r"%[-+ #0-9.]*[A-Za-z](?![A-Za-z])")
+"""Of printf, or nearly one; 100%.png and 50%grey.png are names."""
 
 
 def frame_file(pattern: Path, frame: int) -> Path:
     """``out.%04d.png`` for frame 7 is ``out.0007.png``; a name without a pattern is itself.
 
-    Raises InputError for a number wider than two digits can say, and for a path without a name.
+    Raises InputError for a number wider than two digits can say, for what looks like a pattern but
+    is none, and for a path without a name.
     """
     if not pattern.name:
         raise InputError("-o", str(pattern), "is a folder")
-    wider = WIDER_NUMBER.search(FRAME_NUMBER.sub("_", pattern.name))
+    rest = FRAME_NUMBER.sub("_", pattern.name)
+    wider, other = WIDER_NUMBER.search(rest), OTHER_CONVERSION.search(rest)
     if wider is not None:
         raise InputError("-o", str(pattern), f"{wider[0]!r} is wider than 99 digits")
+    if other is not None:
+        raise InputError("-o", str(pattern), f"{other[0]!r} is no frame number; %d or %04d is")
     return pattern.with_name(FRAME_NUMBER.sub(lambda m: f"{frame:0{m[1] or 1}d}", pattern.name))

@@ -29,7 +29,7 @@ BAD_WORDS: list[tuple[list[str], str]] = [
     (["shot", "-o", "out.png", "--seed", "x"], "--seed"),
     (["shot", "-o", "out.png", "--fov", "0"], "--fov"),
     (["shot", "-o", "out.png", "--eye", "1,2"], "--eye"),
-    (["shot", "-o", "out.png", "--eye", "1,2,inf"], "--eye"),
+    (["shot", "-o", "out.png", "--eye", "1e30,0,0"], "-1e+09 to 1e+09 metres"),
     (["shot", "-o", "out.png", "--target", "-1,b,2"], "--target"),
     (["run", "--frames", "-1"], "--frames"),
     (["run", "-o", "out.png"], "-o"),

@@ -28,7 +28,7 @@ from elemental.scene.model import (  # noqa: E402
 from reference.cache import cached, fingerprint  # noqa: E402
 from reference.metrics import compare, hdr_flip, noise, relative_error  # noqa: E402
 from reference.mitsuba_scene import Job, emission_mask, glass_mask, path_trace  # noqa: E402
-from reference.sheet import sheet  # noqa: E402
+from reference.sheet import sheet, wrapped  # noqa: E402
 from shapes import box  # noqa: E402
 
 JOB = Job((8, 8), 64, 0)
@@ -221,6 +221,19 @@ def test_figures_of_known_pictures() -> None:
     assert relative_error(reference * 0.5, reference) == pytest.approx(-0.5)
     assert noise(reference * 0.9, reference * 1.1, mask)["p50"] == pytest.approx(0.1, rel=1e-4)
     assert sheet(reference, reference, "t").size[0] == 16
+
+
+def test_long_titles_stay_over_their_own_picture() -> None:
+    grey: FloatArray = np.full((40, 160, 3), 0.5, np.float32)
+    title = "atrium gi.resolution=128 gi.bounces=2 eye_adaptation.min_brightness=1"
+    lines = wrapped(f"ours: {title} {'x' * 60}", 152)
+    assert "".join(lines).replace(" ", "") == f"ours:{title}{'x' * 60}".replace(" ", "")
+    pictures = [np.asarray(sheet(grey, grey, words)) for words in ("t", title)]
+    assert pictures[0].shape[1] == pictures[1].shape[1]
+    tops = [picture.shape[0] - 40 for picture in pictures]
+    assert tops[0] < tops[1]
+    right = pictures[1][: tops[1], 162:164]  # the gap behind the first
+    assert (right == pictures[1][0, 0]).all()
 
 
 def test_the_cache_knows_what_changed(tmp_path: Path) -> None:

@@ -212,8 +212,10 @@ def test_outputs_are_checked_before_work_is_spent(tmp_path: Path) -> None:
         ("a.png", 7, "a.png"),
         ("a.%04d.png", 7, "a.0007.png"),
         ("a%d.png", 12, "a12.png"),
+        ("%dx.png", 12, "12x.png"),
         ("a%2d.exr", 7, "a07.exr"),
         ("100%.png", 7, "100%.png"),
+        ("50%grey.%d.png", 7, "50%grey.7.png"),
         ("a%099d.png", 7, f"a{7:099d}.png"),
     ],
 )
@@ -224,6 +226,12 @@ def test_frame_numbers_in_names(pattern: str, frame: int, name: str) -> None:
 @pytest.mark.parametrize("pattern", ["q%99999999d.png", "q%0100d.png", "%d%100d.png"])
 def test_a_frame_number_of_a_hundred_digits_is_refused(pattern: str) -> None:
     with pytest.raises(InputError, match="wider than 99 digits"):
+        frame_file(Path(pattern), 0)
+
+
+@pytest.mark.parametrize("pattern", ["a%s.png", "a%i.png", "%03x_b.png", "%5.2f.png", "%d%s.png"])
+def test_what_is_nearly_a_frame_number_is_refused(pattern: str) -> None:
+    with pytest.raises(InputError, match="is no frame number; %d or %04d is"):
         frame_file(Path(pattern), 0)
 
 

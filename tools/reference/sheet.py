@@ -13,7 +13,7 @@ WHITE_PERCENTILE = 95.0
 WHITE_LEVEL = 0.8
 ERROR_RANGE = 0.5
 """Relative error shown in full colour: red where ours is brighter, blue where it is darker."""
-LABEL_PX = 18
+LINE_PX, FONT_PX, MARGIN_PX = 16, 12, 4
 
 
 def tone(radiance: FloatArray, scale: float) -> ByteArray:
@@ -44,9 +44,32 @@ def sheet(ours: FloatArray, reference: FloatArray, title: str) -> Image.Image:
         ),
     )
     height, width = luminance.shape
-    picture = Image.new("RGB", (3 * width + 4, height + LABEL_PX), (24, 24, 24))
-    draw, font = ImageDraw.Draw(picture), ImageFont.load_default(12)
-    for k, (label, pixels) in enumerate(panels):
-        picture.paste(Image.fromarray(pixels), (k * (width + 2), LABEL_PX))
-        draw.text((k * (width + 2) + 4, 2), label, fill=(230, 230, 230), font=font)
+    labels = [wrapped(label, width - 2 * MARGIN_PX) for label, _ in panels]
+    top = LINE_PX * max(map(len, labels)) + 2
+    picture = Image.new("RGB", (3 * width + 4, top + height), (24, 24, 24))
+    draw, font = ImageDraw.Draw(picture), ImageFont.load_default(FONT_PX)
+    for k, ((_, pixels), lines) in enumerate(zip(panels, labels, strict=True)):
+        left = k * (width + 2)
+        picture.paste(Image.fromarray(pixels), (left, top))
+        for row, line in enumerate(lines):
+            place = (left + MARGIN_PX, 2 + row * LINE_PX)
+            draw.text(place, line, fill=(230, 230, 230), font=font)
     return picture
+
+
+def wrapped(label: str, width: int) -> list[str]:
+    """The label as lines of at most `width` px, broken at spaces, in words where it has to be."""
+    font = ImageFont.load_default(FONT_PX)
+    lines = [""]
+    for word in label.split():
+        joined = f"{lines[-1]} {word}".lstrip()
+        if font.getlength(joined) <= width:
+            lines[-1] = joined
+            continue
+        if lines[-1]:
+            lines.append("")
+        for letter in word:
+            if lines[-1] and font.getlength(lines[-1] + letter) > width:
+                lines.append("")
+            lines[-1] += letter
+    return lines
