@@ -6,11 +6,13 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 from imgui_bundle import imgui
 
 from elemental.core.paths import content_root
 from elemental.gpu.device import Device
+from elemental.scene.model import Region
 from elemental.session import Viewpoint, set_stage
 from elemental.ui.desk import Words
 from elemental.ui.docking import Docking, Room
@@ -67,6 +69,8 @@ def beyond(robot: Robot, page: str) -> list[str]:
 def test_nothing_is_cut(hands: Hands, device: Device, size: tuple[int, int], scale: float) -> None:
     scene = content_root() / "scenes" / "many_lights.toml"
     robot = hands(scene, page="Scene", size=size, scale=scale)
+    far = np.array([-100.25, -12.125, 100.125], np.float32)
+    robot.desk.document.set_regions((Region(far, far + 0.5, -2),), "add region")
     names = [page.name for page in robot.desk.workspace.pages]
     for name in names:
         robot.desk.workspace.bring_to_front(name)

@@ -27,7 +27,8 @@ def _model(tmp_path: Path) -> None:
     slot = {"index": builder.texture(np.zeros((2, 2, 3)))}
     material = builder.material(pbr={"baseColorTexture": slot})
     positions, indices = shapes.box()
-    builder.add(positions, indices, name="box", material=material, translation=[1, 0, 0])
+    uv = positions[:, :2].copy()
+    builder.add(positions, indices, uv0=uv, name="box", material=material, translation=[1, 0, 0])
     builder.light("spot", translation=[0, 1, 0], name="lamp")
     builder.camera(translation=[0, 0, 2], name="cam")
     builder.write(tmp_path / "model.glb")

@@ -20,7 +20,7 @@ from elemental.ui.widgets import Widgets
 
 LEVEL = Setting(
     "level_offset", "int", 0, "each level halves a voxel's side, or doubles it below 0",
-    unit="levels", lo=-2, hi=2,
+    lo=-2, hi=2,
 )  # fmt: skip
 MEANINGS = {-2: "4 x coarser", -1: "2 x coarser", 0: "as the rest", 1: "2 x finer", 2: "4 x finer"}
 GIZMOS = ("Move", "Scale")
