@@ -32,9 +32,11 @@ from elemental.scene.defaults import (
     note_exposure,
 )
 from elemental.scene.evaluate import placed_camera
+from elemental.scene.image_sun import with_sun
 from elemental.scene.load import load_scene
 from elemental.scene.model import Camera, CameraPath, Environment, Scene, framing_camera
 from elemental.scene.named_files import check_named, seen_from_here
+from elemental.scene.sky_sun import note_sun
 from elemental.settings import Settings
 
 DEFAULT_SCENE = "atrium"
@@ -98,11 +100,12 @@ def open_scene(name: str | None, assignments: Iterable[str]) -> tuple[Scene, Set
             file, field, name = str(scene.path), "settings.sky.image", settings["sky.image"]
         with named_by(file, field, name):
             radiance = read_environment(named_file(settings["sky.image"], scene.folder))
-        scene.environment = Environment(radiance, np.ones(3, np.float32), 1.0)
+        scene.environment = with_sun(Environment(radiance, np.ones(3, np.float32), 1.0))
     asked_lights = settings["scene.default_lights"]
     if asked_lights == "on" or (asked_lights == "auto" and is_unlit(scene)):
         add_default_lights(scene)
     note_emission_only(scene)
+    note_sun(scene, settings)
     return scene, settings
 
 

@@ -129,8 +129,8 @@ float soft_visibility(Light light, uint view, vec3 p_ws, vec3 n_ws, vec3 to_ligh
     }
     if (blockers == 0) return 1.0;
     if (blockers == BLOCKER_SAMPLES) return 0.0;
-    float radius_m = light.penumbra_radius * min(growth / float(blockers), growth_max);
-    radius_m = min(max(radius_m, SOFT_TEXELS * texel_m), disc_max);
+    float radius_m = min(light.penumbra_radius * min(growth / float(blockers), growth_max), disc_max);
+    if (radius_m < SOFT_TEXELS * texel_m) return view_visibility(view, p_ws, n_ws, to_light, 0.0);
     float lit = 0.0;
     for (int i = 0; i < PENUMBRA_SAMPLES; ++i) {
         ShadowTap tap = tap_at(light, view,

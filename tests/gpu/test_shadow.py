@@ -145,20 +145,23 @@ def test_a_box_s_shadow_starts_at_its_foot(rig: MakeRig, in_view: bool) -> None:
 
 
 @pytest.mark.parametrize("kind", LIGHTS)
-@pytest.mark.parametrize("contact", [False, True])
+@pytest.mark.parametrize(
+    ("contact", "size"), [(False, 0.0), (True, 0.0), (True, 0.006)], ids=["plain", "contact", "soft"]
+)
 def test_no_light_falls_through_the_joint_of_two_sheets(
-    rig: MakeRig, contact: bool, kind: str
+    rig: MakeRig, contact: bool, size: float, kind: str
 ) -> None:
     """Behind a sheet that stands on a floor all is dark, before it all is lit, up to the joint.
 
-    Filtering alone leaves a line of either within its radius.
+    Filtering alone leaves a line of either within its radius. Where a light has a size the
+    penumbra is narrower than the filter so near to the blocker, as the real sun's.
     """
     upright = np.array([[0, -1, 0, 0], [1, 0, 0, 0.5], [0, 0, 1, 0], [0, 0, 0, 1]], np.float32)
     world = scene(
         (mesh(quad(4.0)), IDENTITY),
         (mesh(quad(1.0)), upright),
         materials=[material(double_sided=True)],
-        lights=[LIGHTS[kind][0]],
+        lights=[replace(LIGHTS[kind][0], source_radius=size)],
     )
     view = rig(world, HIGH, shadow_settings=ShadowSettings(1024))
     texel = 4.5 / 1024
@@ -174,9 +177,10 @@ def test_no_light_falls_through_the_joint_of_two_sheets(
             "light_visibility_in_view(0u, p, n)",
             {"p": points, "n": np.broadcast_to(vector(0, 1, 0), points.shape)},
             reads=view.shadows.depth_reads(contact),
-            defines={"CONTACT_SHADOWS": int(contact)},
+            defines={"CONTACT_SHADOWS": int(contact), "SOFT_SHADOWS": int(view.shadows.soft)},
         )
 
+    assert view.shadows.soft == (size > 0.0)
     if contact:
         assert seen(behind).max() == 0.0
         assert seen(before).min() >= 0.8

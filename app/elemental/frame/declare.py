@@ -34,7 +34,7 @@ def declare_frame(g: Graph, systems: Systems, request: Request) -> AnyTexture:
     size = drawn_size(request.size, s["screen.percentage"] if name == "final" else 100.0)
     view = _view(request, meshes, size)
     environment = request.environment if s["sky.enabled"] else None
-    sky = systems.sky.update(g, environment, s["sky.intensity"])
+    sky = systems.sky.update(g, environment, s["sky.intensity"], without_sun=s["sky.sun"])
     ambient = sky.tinted(_tint(s, "ambient_cubemap.intensity", "ambient_cubemap.tint"))
     shadows = update_shadows(g, systems.shadows, meshes, request.lights, camera=camera, size=size)
     octree = _light_voxels(g, systems, request, shadows, sky)
@@ -68,7 +68,7 @@ def declare_frame(g: Graph, systems: Systems, request: Request) -> AnyTexture:
         shadows,
         cells=cells,
         models=models,
-        sky=sky if environment is not None else None,
+        sky=sky.drawn() if environment is not None else None,
         diffuse_gi=gathered.diffuse,
         specular_gi=gathered.specular.radiance if gathered.specular is not None else None,
     )

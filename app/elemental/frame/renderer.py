@@ -37,6 +37,7 @@ from elemental.scene.evaluate import LastPose, Pose
 from elemental.scene.light_masks import MaskDrift
 from elemental.scene.lights import checked
 from elemental.scene.model import Camera, Light, Material, Region, Scene
+from elemental.scene.sky_sun import SkySun
 from elemental.scene.volumes import Volume, blend
 from elemental.settings import Settings
 
@@ -89,6 +90,7 @@ class Renderer:
         self._area_lights = AreaLightBlock(scene, settings["gi.area_lights"])
         self._last_pose = LastPose()
         self._mask_drift = MaskDrift()
+        self._sky_sun = SkySun()
         self._post = PostHistory(device, settings, scene.folder)
         self._meshes = GpuScene(device, scene, self._area_lights.lights)
         self._decals = Decals(device, scene, self._meshes)
@@ -199,7 +201,7 @@ class Renderer:
         systems = self._systems(view, time_s)
         request = Request(
             camera=camera,
-            lights=lights,
+            lights=self._sky_sun.joined(lights, self.scene.environment, self.settings),
             environment=self.scene.environment,
             settings=blend(self.settings, self.scene.volumes, camera.world_from_view[:3, 3]),
             time_s=time_s,

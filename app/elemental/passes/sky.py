@@ -37,9 +37,10 @@ class Sky:
 
     def __init__(self, device: Device) -> None:
         self._device = device
-        self._built: FloatArray | None = None
-        self._image: Texture | None = None
+        self._built: tuple[FloatArray | None, FloatArray | None] = (None, None)
+        self._images: list[Texture] = []
         self._map = _constant_map(device)
+        self._whole: Texture | None = None
         self._params = _params(self._map, np.zeros(3, np.float32))
         self.key: Hashable = None
         self._builds = 0
@@ -52,15 +53,25 @@ class Sky:
         """The uniform blocks of lib/sky.glsl."""
         return {"Sky": self._params}
 
-    def update(self, g: Graph, environment: Environment | None, intensity: float = 1.0) -> Sky:
+    def update(
+        self,
+        g: Graph,
+        environment: Environment | None,
+        intensity: float = 1.0,
+        *,
+        without_sun: bool = False,
+    ) -> Sky:
         """Follow the environment (None: black) times `intensity`; the map is built only for a new
-        image. Returns the sky, ready to be read."""
-        if self._image is not None:
-            self._image.release()
-            self._image = None
-        radiance = None if environment is None else environment.radiance
-        if radiance is not self._built:
-            self._build(g, radiance)
+        image, and without the sun that was found there if that is a light by itself. Returns the
+        sky, ready to be read."""
+        for image in self._images:
+            image.release()
+        self._images.clear()
+        radiance = whole = None if environment is None else environment.radiance
+        if without_sun and environment is not None and environment.sun is not None:
+            radiance = environment.sun.without
+        if radiance is not self._built[0] or whole is not self._built[1]:
+            self._build(g, radiance, whole)
         tint = np.zeros(3, np.float32)
         if environment is not None:
             tint = np.asarray(environment.tint * environment.intensity * intensity, np.float32)
@@ -80,27 +91,49 @@ class Sky:
         other._params["tint"] *= factor
         return other
 
+    def drawn(self) -> Sky:
+        """This sky as the eye sees it behind the scene: its sun is there, even where it is a light.
+
+        It is this frame's, and its map has one level, for directions without a width.
+        """
+        if self._whole is None:
+            return self
+        other = copy.copy(self)
+        other._map = self._whole
+        other._params = _params(self._whole, self._params["tint"])
+        return other
+
     def release(self) -> None:
-        """Free the map."""
-        for texture in (self._map, self._image):
+        """Free the maps."""
+        for texture in (self._map, self._whole, *self._images):
             if texture is not None:
                 texture.release()
 
-    def _build(self, g: Graph, radiance: FloatArray | None) -> None:
-        self._built = radiance
+    def _build(self, g: Graph, radiance: FloatArray | None, whole: FloatArray | None) -> None:
+        self._built = (radiance, whole)
         self._builds += 1
         self._map.release()
-        if radiance is None:
+        if self._whole is not None:
+            self._whole.release()
+            self._whole = None
+        if radiance is None or whole is None:
             self._map = _constant_map(self._device)
             return
+        size = min(max(1 << (radiance.shape[1] // 2 - 1).bit_length(), SMALLEST), LARGEST)
+        self._map = self._mapped(g, "sky.map", radiance, size, (size // COARSEST).bit_length())
+        if whole is not radiance:
+            self._whole = self._mapped(g, "sky.whole", whole, size, 1)
+
+    def _mapped(self, g: Graph, name: str, radiance: FloatArray, size: int, levels: int) -> Texture:
+        """The map of an image, of ``size`` texels a side."""
         height, width = radiance.shape[:2]
         texels = np.ones((height, width, 4), np.float32)
         texels[..., :3] = radiance
-        self._image = self._device.texture("sky.image", (width, height), RGBA32F, data=texels)
-        size = min(max(1 << (width // 2 - 1).bit_length(), SMALLEST), LARGEST)
-        levels = (size // COARSEST).bit_length()
-        self._map = self._device.texture("sky.map", (size, size), RGBA32F, mips=levels)
-        _fill_levels(g, self._image, self._map, mean_radiance(radiance))
+        image = self._device.texture("sky.image", (width, height), RGBA32F, data=texels)
+        self._images.append(image)
+        sky = self._device.texture(name, (size, size), RGBA32F, mips=levels)
+        _fill_levels(g, image, sky, mean_radiance(radiance))
+        return sky
 
 
 def mean_radiance(radiance: FloatArray) -> FloatArray:

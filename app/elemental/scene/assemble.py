@@ -15,6 +15,7 @@ from elemental.core.images import read_environment
 from elemental.scene.gltf import load_gltf
 from elemental.scene.gltf.animations import EVERY
 from elemental.scene.ies import read_ies
+from elemental.scene.image_sun import with_sun
 from elemental.scene.light_changes import change_lights
 from elemental.scene.light_masks import read_light_mask
 from elemental.scene.model import (
@@ -288,7 +289,7 @@ def _environment(table: EnvironmentTable, path: Path) -> Environment:
     if table.file:
         with named_by(path, "environment.file", table.file):
             radiance = read_environment(path.parent / table.file)
-    return Environment(radiance, _vec(table.tint), table.intensity)
+    return with_sun(Environment(radiance, _vec(table.tint), table.intensity))
 
 
 def _vec(values: list[float]) -> FloatArray:

@@ -118,14 +118,25 @@ def checked(light: Light) -> Light:
     return light
 
 
+@dataclass(frozen=True, eq=False)
+class ImageSun:
+    """The sun of an environment's image as a directional light of an untinted image, and the
+    image's radiance (H, W, 3) float32 ``without`` it."""
+
+    light: Light
+    without: FloatArray
+
+
 @dataclass
 class Environment:
     """Light from infinity: `radiance` (H, W, 3) float32 equirectangular times tint and intensity.
 
     Direction (x, y, z) is at u = 1/2 + atan2(x, -z) / 2π, v = acos(y) / π, v downwards: row 0 is
-    +y, the middle column -z. Without an image the radiance is 1 everywhere.
+    +y, the middle column -z. Without an image the radiance is 1 everywhere. The image holds its
+    `sun` too, which `scene.image_sun` found there.
     """
 
     radiance: FloatArray | None
     tint: FloatArray
     intensity: float
+    sun: ImageSun | None = None

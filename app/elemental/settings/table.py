@@ -73,6 +73,10 @@ TABLE = (
         unit="file",
     ),
     Setting(
+        "sky.sun", "bool", True,
+        "light the scene by the sun of the environment's image as by a sun: with sharp shadows",
+    ),
+    Setting(
         "indirect.color", "color", (1.0, 1.0, 1.0),
         "tint of the indirect light that surfaces in view receive",
         lo=0, hi=1, volume=True,
