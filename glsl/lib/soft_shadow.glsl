@@ -56,12 +56,14 @@ vec3 on_plane(Light light, SoftReceiver r, vec2 offset_m) {
     return light.position_ws + from_light / (1.0 - dot(r.n_ws, offset) / height);
 }
 
-// Place of a sample in its view's layer, and its depth there; w: clip w.
+// Place of a sample in its view's layer, and its depth there; w: clip w. seen: false beside a
+// cascade, whose last texels tell nothing of what is there.
 struct ShadowTap {
     vec3 place;
     float depth;
     float w;
     uint view;
+    bool seen;
 };
 
 ShadowTap tap_at(Light light, uint view, vec3 p_ws) {
@@ -75,6 +77,7 @@ ShadowTap tap_at(Light light, uint view, vec3 p_ws) {
                      shadow_views[tap.view].layer);
     tap.depth = coordinate.z - shadow_views[tap.view].depth_bias;
     tap.w = p.w;
+    tap.seen = light.kind != LIGHT_DIRECTIONAL || inside == coordinate.xy;
     return tap;
 }
 
@@ -119,23 +122,29 @@ float soft_visibility(Light light, uint view, vec3 p_ws, vec3 n_ws, vec3 to_ligh
 
     float growth = 0.0;
     int blockers = 0;
+    int searched = 0;
     for (int i = 0; i < BLOCKER_SAMPLES; ++i) {
         ShadowTap tap = tap_at(light, view,
                                on_plane(light, r, search_m * sunflower(i, BLOCKER_SAMPLES)));
+        if (!tap.seen) continue;
+        ++searched;
         float depth = textureLod(u_shadow_depths, tap.place, 0.0).r;
         if (depth >= tap.depth) continue;
         growth += penumbra_growth(light, tap, depth);
         ++blockers;
     }
     if (blockers == 0) return 1.0;
-    if (blockers == BLOCKER_SAMPLES) return 0.0;
+    if (blockers == searched) return 0.0;
     float radius_m = min(light.penumbra_radius * min(growth / float(blockers), growth_max), disc_max);
     if (radius_m < SOFT_TEXELS * texel_m) return view_visibility(view, p_ws, n_ws, to_light, 0.0);
     float lit = 0.0;
+    int compared = 0;
     for (int i = 0; i < PENUMBRA_SAMPLES; ++i) {
         ShadowTap tap = tap_at(light, view,
                                on_plane(light, r, radius_m * sunflower(i, PENUMBRA_SAMPLES)));
+        if (!tap.seen) continue;
         lit += texture(u_shadow_maps, vec4(tap.place, tap.depth));
+        ++compared;
     }
-    return lit / float(PENUMBRA_SAMPLES);
+    return lit / float(max(compared, 1));
 }

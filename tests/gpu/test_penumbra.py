@@ -204,3 +204,14 @@ def test_translucent_surfaces_receive_penumbras(rig: MakeRig) -> None:
         )
         pictures.append(rig(world, HIGH).scene_color()[..., 0])
     np.testing.assert_allclose(pictures[1], pictures[0], atol=0.02)
+
+
+def test_nothing_shades_a_floor_where_a_cascade_ends(rig: MakeRig) -> None:
+    """A wide sun's disc reaches over the last texels of a cascade, which know nothing of there."""
+    light = sun(vector(-0.5, -0.6, -0.4), source_radius=0.09)
+    world = scene((mesh(quad(10.0)), IDENTITY), lights=[light])
+    low = camera(vector(0.3, 1.5, 3.2), vector(0.1, 0.45, 0))
+    view = rig(world, low, shadow_settings=ShadowSettings(512))
+    lit, floor = view.visibility(), np.isfinite(view.positions()[..., 0])
+    assert floor.mean() > 0.5
+    assert lit[floor].min() > 0.99

@@ -146,7 +146,9 @@ def test_a_box_s_shadow_starts_at_its_foot(rig: MakeRig, in_view: bool) -> None:
 
 @pytest.mark.parametrize("kind", LIGHTS)
 @pytest.mark.parametrize(
-    ("contact", "size"), [(False, 0.0), (True, 0.0), (True, 0.006)], ids=["plain", "contact", "soft"]
+    ("contact", "size"),
+    [(False, 0.0), (True, 0.0), (True, 0.006)],
+    ids=["plain", "contact", "soft"],
 )
 def test_no_light_falls_through_the_joint_of_two_sheets(
     rig: MakeRig, contact: bool, size: float, kind: str
