@@ -9,11 +9,15 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from elemental.frame import Renderer
 from elemental.gpu.device import Device
 from elemental.passes.sky import Sky, level_half_angle, mean_radiance
+from elemental.scene.image_sun import with_sun
 from elemental.scene.model import Environment
+from elemental.settings import Settings
 from glsl.harness import run_glsl
-from gpu.rig import vector
+from gpu.rig import IDENTITY, camera, mesh, scene, vector
+from shapes import quad
 
 Array = npt.NDArray[Any]
 ONE = vector(1, 1, 1)
@@ -157,3 +161,45 @@ def test_the_map_is_built_only_for_a_new_image(device: Device) -> None:
     assert counts == [True, False, True, False, False]
     assert len(set(keys)) == 4
     sky.release()
+
+
+def test_the_eye_sees_the_sun_that_cones_do_not(device: Device) -> None:
+    """Once it is a light the drawn sky is what it was to the bit; at any width no trace is left."""
+    whole = make_sky(device, Environment(sunny(), ONE, 1.0))
+    cut = Sky(device)
+    g = device.begin_frame()
+    cut.update(g, with_sun(Environment(sunny(), ONE, 1.0)), without_sun=True)
+    g.execute()
+    directions = np.concatenate([sphere_directions(2000), [[0.6, 0.48, -0.64]]])
+    seen = look(cut.drawn(), device, directions, 0.0)
+    np.testing.assert_array_equal(seen, look(whole, device, directions, 0.0))
+    assert seen.max() > 5000.0
+    for angle in ANGLES:
+        assert look(cut, device, directions, angle).max() < 1.6
+    assert whole.drawn() is whole
+    for sky in (whole, cut):
+        sky.release()
+
+
+def test_the_sun_lights_a_floor_as_the_settings_say(device: Device) -> None:
+    """From one frame to the next, and without the environment or its switch not at all."""
+    environment = with_sun(Environment(sunny(), ONE, 1.0))
+    assert environment.sun is not None
+    floor = scene((mesh(quad(1.0)), IDENTITY), environment=environment)
+    above = camera(vector(0, 3, 0.01), vector(0, 0, 0), fov_y=0.3)
+    renderer = Renderer(device, floor, Settings().replace({"gi.enabled": False}, ""), (16, 16))
+
+    def direct(**changes: Any) -> float:
+        named = {key.replace("_", "."): value for key, value in changes.items()}
+        renderer.set_settings(Settings().replace({"gi.enabled": False, **named}, ""))
+        picture = renderer.read(renderer.render(above, 0.0, 0, "direct"))
+        return float(picture[8, 8, :3].mean())
+
+    lit = direct()
+    light = environment.sun.light
+    diffuse = light.strength.mean() * -light.direction[1] / np.pi
+    assert lit == pytest.approx(diffuse, rel=0.05)  # and some gloss
+    assert direct(sky_intensity=0.5) == pytest.approx(0.5 * lit, rel=1e-3)
+    assert direct(sky_sun=False) == direct(sky_enabled=False) == 0.0
+    assert direct() == lit
+    renderer.release()

@@ -26,6 +26,9 @@ from reference.bsdf import Entry, MaterialConverter, interior
 from reference.emission import emitting_parts
 from reference.ply import WorldMesh, two_sheets, world_meshes, write_ply
 
+LEAST_SKY_ROWS = 1024
+"""Of an environment's image for mitsuba."""
+
 MASK_SAMPLES = 16
 """Samples that look for a light source in a pixel."""
 
@@ -159,7 +162,22 @@ def _environment(scene: Scene, factor: float) -> dict[str, Entry]:
         return {"sky": {"type": "constant", "radiance": {"type": "rgb", "value": tint.tolist()}}}
     # Ours has -z in the middle column, mitsuba's in the first: half a turn.
     image = np.roll(environment.radiance, environment.radiance.shape[1] // 2, axis=1) * tint
+    image = _rows_from_pole_to_pole(image)
     return {"sky": {"type": "envmap", "bitmap": mi.Bitmap(np.ascontiguousarray(image))}}
+
+
+def _rows_from_pole_to_pole(image: FloatArray) -> FloatArray:
+    """The image (H, W, 3) as mitsuba takes it, whose first and last rows lie on the poles.
+
+    Ours end there. Left as they are, the 64 rows of a sky with a sun 50 degrees high bring 1.5 %
+    more light to the ground. Many more rows, interpolated as ours are drawn.
+    """
+    height = len(image)
+    at = np.linspace(-0.5, height - 0.5, max(2 * height, LEAST_SKY_ROWS)).clip(0, height - 1)
+    above = np.floor(at).astype(np.int64)
+    below = np.minimum(above + 1, height - 1)
+    part = (at - above).astype(np.float32)[:, None, None]
+    return np.asarray(image[above] * (1 - part) + image[below] * part, np.float32)
 
 
 def _punctual(light: Light) -> Entry:
