@@ -60,7 +60,7 @@ def find_sun(radiance: FloatArray) -> ImageSun | None:
     image = _Image(radiance)
     if image.texel > WIDEST_SUN:
         return None
-    left = radiance @ LUMINANCE.astype(np.float32)
+    left = image.luminance.copy()
     median = _median(left)
     best: ImageSun | None = None
     for _ in range(TRIES):
@@ -72,16 +72,16 @@ def find_sun(radiance: FloatArray) -> ImageSun | None:
         sun = _sun_in(image, patch, peak, RIM_CONTRAST * median)
         if sun is not None and (best is None or sun.light.intensity > best.light.intensity):
             best = sun
-        left[patch.rows][patch.angle <= WIDEST_RIM] = 0.0
+        left[patch.at] = np.where(patch.angle <= WIDEST_RIM, 0.0, left[patch.at])
     return best
 
 
 @dataclass(frozen=True)
 class _Cap:
-    """The rows that come near a direction. directions (h, W, 3), solid (h, W) sr, angle (h, W)
-    rad from that direction, radiance (h, W, 3)."""
+    """The N texels near a direction, in (rows, columns) ``at``: directions (N, 3), solid (N,) sr,
+    angle (N,) rad from that direction, radiance (N, 3)."""
 
-    rows: slice
+    at: tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]
     directions: F64
     solid: F64
     angle: F64
@@ -97,37 +97,46 @@ class _Image:
         self.texel = max(math.pi / self.height, 2.0 * math.pi / self.width)
         self._theta = (np.arange(self.height) + 0.5) * math.pi / self.height
         self._azimuth = ((np.arange(self.width) + 0.5) / self.width - 0.5) * 2.0 * math.pi
+        self.luminance = radiance.reshape(-1, 3).dot(LUMINANCE.astype(np.float32))
+        self.luminance = self.luminance.reshape(self.height, self.width)
         sines = np.sin(self._theta)
         self.row_solid = sines * (4.0 * math.pi / (sines.sum() * self.width))
 
     def direction(self, row: int, column: int) -> F64:
         """(3,) unit, towards a texel's centre."""
-        towards: F64 = self._directions(slice(row, row + 1))[0, column]
+        towards: F64 = self._directions(np.array([row]), np.array([column]))[0]
         return towards
 
-    def _directions(self, rows: slice) -> F64:
-        theta, azimuth = self._theta[rows, None], self._azimuth[None]
+    def _directions(self, rows: npt.NDArray[np.int64], columns: npt.NDArray[np.int64]) -> F64:
+        theta, azimuth = self._theta[rows], self._azimuth[columns]
         level = np.sin(theta)
-        parts = (level * np.sin(azimuth), np.cos(theta), -level * np.cos(azimuth))
-        directions: F64 = np.stack(np.broadcast_arrays(*parts), axis=-1)
-        return directions
+        return np.stack((level * np.sin(azimuth), np.cos(theta), -level * np.cos(azimuth)), axis=-1)
 
     def cap(self, towards: F64) -> _Cap:
         """What lies within twice the widest rim of a direction."""
         middle = math.acos(min(max(float(towards[1]), -1.0), 1.0))
         near = np.flatnonzero(np.abs(self._theta - middle) <= 2.0 * WIDEST_RIM)
-        rows = slice(int(near[0]), int(near[-1]) + 1)
-        directions = self._directions(rows)
+        theta = self._theta[near, None]
+        beside = towards[0] * np.sin(self._azimuth) - towards[2] * np.cos(self._azimuth)
+        cosines = beside * np.sin(theta) + towards[1] * np.cos(theta)
+        rows, columns = np.nonzero(cosines >= math.cos(2.0 * WIDEST_RIM))
+        rows = rows + near[0]
+        at = (rows, columns)
+        directions = self._directions(rows, columns)
         angle = np.arccos(np.clip(directions @ towards, -1.0, 1.0))
-        solid = np.repeat(self.row_solid[rows, None], self.width, axis=1)
-        return _Cap(rows, directions, solid, angle, self.radiance[rows].astype(np.float64))
+        radiance = self.radiance[at].astype(np.float64)
+        return _Cap(at, directions, self.row_solid[rows], angle, radiance)
 
     def facing_irradiance(self, towards: F64) -> float:
         """Luminance on a plane that faces a direction."""
+        x, y, z = towards.tolist()
+        level = (x * np.sin(self._azimuth) - z * np.cos(self._azimuth)).astype(np.float32)
         total = 0.0
-        for row in range(self.height):
-            cosines = np.maximum(self._directions(slice(row, row + 1))[0] @ towards, 0.0)
-            total += float(cosines @ self.radiance[row] @ LUMINANCE) * self.row_solid[row]
+        for theta, solid, row in zip(self._theta, self.row_solid, self.luminance, strict=True):
+            cosines = np.maximum(
+                level * np.float32(math.sin(theta)) + np.float32(y * math.cos(theta)), 0
+            )
+            total += float(cosines.dot(row)) * float(solid)
         return total
 
 
@@ -135,12 +144,12 @@ def _sun_in(image: _Image, near: _Cap, peak: float, rim_luminance: float) -> Ima
     """The sun around the middle of a cap, whose brightest texel has the luminance ``peak``."""
     luminance = near.radiance @ LUMINANCE
     bright = (luminance >= 0.5 * peak) & (near.angle <= WIDEST_RIM)
-    centre = _unit(np.einsum("n,nc->c", (near.solid * luminance)[bright], near.directions[bright]))
+    centre = _unit((near.solid * luminance)[bright] @ near.directions[bright])
     angle = np.arccos(np.clip(near.directions @ centre, -1.0, 1.0))
     ring = max(image.texel, FINEST_RING)
     number = (angle / ring).astype(np.int64)
-    weights = np.bincount(number.ravel(), near.solid.ravel())
-    sums = np.bincount(number.ravel(), (near.solid * luminance).ravel())
+    weights = np.bincount(number, near.solid)
+    sums = np.bincount(number, near.solid * luminance)
     last = math.ceil(WIDEST_RIM / ring)
     dim = sums[:last] <= rim_luminance * weights[:last]
     dim &= weights[:last] > 0.0
@@ -149,14 +158,14 @@ def _sun_in(image: _Image, near: _Cap, peak: float, rim_luminance: float) -> Ima
     around = (number >= first) & (number < first + 2)
     rim = np.average(near.radiance[around], axis=0, weights=near.solid[around])
     inside = number < first
-    excess = np.maximum(near.radiance - rim, 0.0) * inside[..., None]
+    excess = np.maximum(near.radiance - rim, 0.0) * inside[:, None]
     power = excess @ LUMINANCE * near.solid
     if not power.any():
         return None
     # Of a uniform disc its very area, however far a faint glow goes on.
     area = power.sum() ** 2 / (power * power / near.solid).sum()
     radius = math.acos(max(1.0 - area / (2.0 * math.pi), -1.0))
-    vector = np.einsum("hwc,hw,hwd->cd", excess, near.solid, near.directions)
+    vector = (excess * near.solid[:, None]).T @ near.directions
     towards = _unit(LUMINANCE @ vector)
     strength = np.maximum(vector @ towards, 0.0)
     illuminance = float(LUMINANCE @ strength)
@@ -167,7 +176,7 @@ def _sun_in(image: _Image, near: _Cap, peak: float, rim_luminance: float) -> Ima
     ):
         return None
     rest = image.radiance.copy()
-    rest[near.rows] = np.where(inside[..., None], np.minimum(near.radiance, rim), rest[near.rows])
+    rest[near.at] = np.where(inside[:, None], np.minimum(near.radiance, rim), near.radiance)
     light = Light(
         name="sun of the environment",
         kind="directional",
