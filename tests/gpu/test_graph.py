@@ -284,6 +284,7 @@ def test_clear_and_copy(device: Device) -> None:
     graph.copy_texture(ids, copy)
     graph.clear_buffer(numbers, 3)
     graph.clear_buffer(numbers, 9, offset=8, size=16)
+    graph.clear_buffer(numbers, (0, 1, 1, 7), offset=32)
     graph.copy_buffer(numbers, part, size=16, src_offset=16, dst_offset=16)
     for handle in (color, copy, numbers, part):
         graph.keep(handle)
@@ -295,7 +296,7 @@ def test_clear_and_copy(device: Device) -> None:
     for level in range(2):
         assert (color.physical.read(level) == (0.5, 1, 2, 4)).all()
     assert (copy.physical.read() == 7).all()
-    assert numbers.physical.read(np.uint32).tolist() == [3, 3, 9, 9, 9, 9] + [3] * 10
+    assert numbers.physical.read(np.uint32).tolist() == [3, 3, 9, 9, 9, 9, 3, 3] + [0, 1, 1, 7] * 2
     assert part.physical.read(np.uint32).tolist()[4:] == [9, 9, 3, 3]
 
 

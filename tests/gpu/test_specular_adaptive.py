@@ -21,6 +21,7 @@ from elemental.core.layout import layouts
 from elemental.frame import Renderer
 from elemental.gpu.device import Device
 from elemental.gpu.graph import Graph
+from elemental.passes.cone_trace.specular import NOTHING_LISTED
 from elemental.scene.model import Camera, Environment, Material, Scene
 from elemental.settings import Settings
 from gpu.rig import IDENTITY, material, mesh, scene, vector
@@ -199,8 +200,7 @@ def test_the_append_reaches_every_item_and_launches_no_group_too_many(
     g: Graph = device.begin_frame()
     counts = g.buffer("counts", int(layouts().struct("SpecularCounts").itemsize))
     pixels = g.buffer("pixels", 4 * 192)
-    g.clear_buffer(counts, 0)
-    g.clear_buffer(counts, 1, offset=4, size=8)
+    g.clear_buffer(counts, NOTHING_LISTED)
     lists = {"SpecularState": counts, "SpecularPixels": pixels}
     g.compute(append, writes=lists, threads=192)
     g.compute(follow, reads=lists, writes={"Marks": marks}, indirect=(counts, 0))

@@ -174,7 +174,7 @@ class Resource:
     """Hazard state of a physical resource."""
 
     def __init__(self) -> None:
-        self.written_at = self.access_at = self.ordered_at = 0
+        self.written_at = self.unordered_at = self.ordered_at = 0
 
 
 FETCH, IMAGE, STORAGE = (

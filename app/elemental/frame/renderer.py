@@ -88,7 +88,7 @@ class Renderer:
         self.settings = settings
         self.size = size
         self._area_lights = AreaLightBlock(scene, settings["gi.area_lights"])
-        self._last_pose = LastPose()
+        self._last_pose = LastPose(scene)
         self._mask_drift = MaskDrift()
         self._sky_sun = SkySun()
         self._post = PostHistory(device, settings, scene.folder)
@@ -172,7 +172,7 @@ class Renderer:
     def _move(self, time_s: float, pose: Pose | None) -> Sequence[Light]:
         """Bring the scene to its pose at a time, or to the given one. Returns its lights."""
         if pose is None:
-            pose = self._last_pose.at(self.scene, time_s)
+            pose = self._last_pose.at(time_s)
         if self._meshes.update(pose, time_s):
             self._fit_emission()
         if self._decals.voxels is not None and self._decals.voxels.changed():

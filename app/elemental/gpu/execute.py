@@ -269,10 +269,11 @@ class Executor:
         gl = self.gl
         buffer, _, _ = node.bound.accesses[0]
         gl.glBindBuffer(c.COPY_WRITE_BUFFER, buffer.glo)
-        value = ctypes.byref(ctypes.c_uint(node.value))
+        words = (ctypes.c_uint * len(node.words))(*node.words)
+        one = len(words) == 1
+        format, kind = (c.R32UI, c.RED_INTEGER) if one else (c.RGBA32UI, c.RGBA_INTEGER)
         span = (node.offset, node.length)
-        kind = (c.RED_INTEGER, c.UNSIGNED_INT)
-        gl.glClearBufferSubData(c.COPY_WRITE_BUFFER, c.R32UI, *span, *kind, value)
+        gl.glClearBufferSubData(c.COPY_WRITE_BUFFER, format, *span, kind, c.UNSIGNED_INT, words)
 
     def _copy(self, node: Any) -> None:
         gl = self.gl

@@ -238,15 +238,21 @@ class Graph:
         self.passes.append(ClearTexture(f"clear {handle.name}", uses, tuple(color)))
 
     def clear_buffer(
-        self, handle: AnyBuffer, value: int = 0, offset: int = 0, size: int | None = None
+        self,
+        handle: AnyBuffer,
+        value: int | tuple[int, int, int, int] = 0,
+        offset: int = 0,
+        size: int | None = None,
     ) -> None:
-        """Fill ``size`` bytes (None: the rest) from ``offset`` with the 32-bit ``value``."""
+        """Fill ``size`` bytes (None: the rest) from ``offset`` with a 32-bit ``value`` or four."""
         length = handle.nbytes - offset if size is None else size
-        if offset % 4 or length % 4 or offset + length > handle.nbytes:
+        words = (value,) if isinstance(value, int) else value
+        step = 4 * len(words)
+        if offset % step or length % step or offset + length > handle.nbytes:
             raise GraphError(f"clear {handle.name}: {length} bytes from {offset}")
         whole = length == handle.nbytes
         uses = self._transfer(ClearBuffer, c.BUFFER_UPDATE_BARRIER, target=handle, whole=whole)
-        self.passes.append(ClearBuffer(f"clear {handle.name}", uses, value, offset, length))
+        self.passes.append(ClearBuffer(f"clear {handle.name}", uses, words, offset, length))
 
     def copy_buffer(
         self,

@@ -98,13 +98,15 @@ class ClearTexture(Pass):
 
 
 class ClearBuffer(Pass):
-    """A fill of a range of a buffer."""
+    """A fill of a range of a buffer with one word, or with four over and over."""
 
-    __slots__ = ("length", "offset", "value")
+    __slots__ = ("length", "offset", "words")
 
-    def __init__(self, name: str, uses: Uses, value: int, offset: int, length: int) -> None:
+    def __init__(
+        self, name: str, uses: Uses, words: tuple[int, ...], offset: int, length: int
+    ) -> None:
         Pass.__init__(self, name, uses)
-        self.value, self.offset, self.length = value, offset, length
+        self.words, self.offset, self.length = words, offset, length
 
 
 class Copy(Pass):

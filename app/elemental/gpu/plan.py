@@ -218,11 +218,11 @@ UNORDERED = 2
 
 
 class Tracked(Protocol):
-    """A physical resource with the clock of its last shader write, of its last access, and of its
-    last access but for unordered writes."""
+    """A physical resource with the clock of its last shader write, of its last unordered write, and
+    of its last access but for those."""
 
     written_at: int
-    access_at: int
+    unordered_at: int
     ordered_at: int
 
 
@@ -255,24 +255,25 @@ class Hazards:
             elif shader_write == UNORDERED:
                 since = state.ordered_at
             else:
-                since = state.access_at
+                since = max(state.ordered_at, state.unordered_at)
             if since > issued[bit]:
                 bits |= bit
         if bits:
             self.issued(bits)
         self.clock = now = self.clock + 1
         for state, _, shader_write in accesses:
-            state.access_at = now
             if shader_write:
                 state.written_at = now
-            if shader_write != UNORDERED:
+            if shader_write == UNORDERED:
+                state.unordered_at = now
+            else:
                 state.ordered_at = now
         return bits
 
     def touched(self, state: Tracked) -> None:
         """Note an access outside of passes: an upload."""
         self.clock += 1
-        state.access_at = state.ordered_at = self.clock
+        state.ordered_at = self.clock
 
     def issued(self, bits: int) -> None:
         """Note that a barrier of ``bits`` was issued now."""

@@ -29,7 +29,7 @@ class Texture(Shaped):
     """A texture of immutable storage on the device; ``release`` frees it and its views."""
 
     __slots__ = (
-        "access_at", "category", "device", "glo", "ordered_at", "serial", "target", "views",
+        "category", "device", "glo", "ordered_at", "serial", "target", "unordered_at", "views",
         "written_at",
     )  # fmt: skip
 
@@ -38,7 +38,7 @@ class Texture(Shaped):
         self.target = desc.target
         self.serial = next(_serial)
         self.views: dict[tuple[int, int, int, int, bool], int] = {}
-        self.written_at = self.access_at = self.ordered_at = 0
+        self.written_at = self.unordered_at = self.ordered_at = 0
         gl = device.gl
         self.glo = gl.generate("Textures")
         device.bind_for_update(self.target, self.glo)
@@ -162,8 +162,8 @@ class Buffer:
     """A buffer on the device."""
 
     __slots__ = (
-        "access_at", "category", "device", "glo", "mgl", "name", "nbytes", "ordered_at", "serial",
-        "texels", "written_at",
+        "category", "device", "glo", "mgl", "name", "nbytes", "ordered_at", "serial", "texels",
+        "unordered_at", "written_at",
     )  # fmt: skip
 
     def __init__(
@@ -177,7 +177,7 @@ class Buffer:
         nbytes = contents if isinstance(contents, int) else len(contents)
         self.device, self.name, self.nbytes, self.category = device, name, nbytes, category
         self.serial = next(_serial)
-        self.written_at = self.access_at = self.ordered_at = 0
+        self.written_at = self.unordered_at = self.ordered_at = 0
         given: dict[str, Any] = {"reserve" if isinstance(contents, int) else "data": contents}
         self.texels = 0
         """GL name of the buffer texture, once it was asked for."""

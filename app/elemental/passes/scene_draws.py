@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from itertools import groupby
+from typing import TypeAlias
 
 import numpy as np
 
@@ -28,6 +29,11 @@ INSTANCE_FORMAT = "16f 16f 4u 64x/i"
 INSTANCE_NAMES = ("a_world_from_local", "a_normal_from_local", "a_instance_words")
 """Members of struct Instance as attributes; the last holds its four words."""
 
+RunKey: TypeAlias = tuple[tuple[AlphaMode, ...], bool | None, bool]
+"""(alpha modes, dynamic, cull) of `draw_positions`."""
+Run: TypeAlias = tuple[int, int, bool]
+"""Draw commands that follow each other: (first, count, whether double-sided)."""
+
 
 class SceneDraws:
     """The draws of a scene whose geometry, instances and textures a GpuScene holds.
@@ -43,6 +49,7 @@ class SceneDraws:
     _scene: Scene
     _table: InstanceTable
     _textures: MaterialTextures
+    _runs: dict[RunKey, list[Run]]
 
     def _upload(self, name: str, values: Array, dynamic: bool = False) -> Buffer:
         return self._device.buffer(f"scene.{name}", values, category="meshes", dynamic=dynamic)
@@ -56,6 +63,7 @@ class SceneDraws:
         table = self._table
         self._culling = Culling(commands, numbers, table.low, table.high, table.visible)
         self._commands, self._order = commands, numbers
+        self._runs = {}
         self._everything = self._place("everything")
         self._seen_by: dict[str, Placed] = {}
         solid = commands[: sum(batch.count for batch in self.batches(SOLID))]
@@ -221,11 +229,22 @@ class SceneDraws:
         `dynamic` as for `batches`, `seen_by` and `cull` as for `draw`.
         """
         placed = self._placed(seen_by)
-        for mode in CATEGORIES:
-            batches = self.batches((mode,), dynamic) if mode in alpha_modes else []
-            for double_sided, run in groupby(batches, lambda batch: cull and batch.double_sided):
-                if cull:
-                    encoder.set(cull="none" if double_sided else "back")
-                drawn = list(run)
-                count, first = sum(batch.count for batch in drawn), drawn[0].first
-                encoder.draw_indirect(placed.positions_only, placed.commands, count, first)
+        for first, count, double_sided in self._runs_of(alpha_modes, dynamic, cull):
+            if cull:
+                encoder.set(cull="none" if double_sided else "back")
+            encoder.draw_indirect(placed.positions_only, placed.commands, count, first)
+
+    def _runs_of(
+        self, alpha_modes: Collection[AlphaMode], dynamic: bool | None, cull: bool
+    ) -> list[Run]:
+        key = tuple(alpha_modes), dynamic, cull
+        if key not in self._runs:
+            self._runs[key] = []
+            for mode in CATEGORIES:
+                batches = self.batches((mode,), dynamic) if mode in alpha_modes else []
+                sides = groupby(batches, lambda batch: cull and batch.double_sided)
+                for double_sided, drawn in sides:
+                    run = list(drawn)
+                    count = sum(batch.count for batch in run)
+                    self._runs[key].append((run[0].first, count, double_sided))
+        return self._runs[key]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import groupby
 from typing import Any, TypeAlias
 
@@ -85,7 +86,7 @@ class Batch:
     instance: int
     """The only instance of a blended batch, else -1."""
 
-    @property
+    @cached_property
     def texture_mask(self) -> int:
         """Bit by SLOTS: the slot has a texture."""
         return slot_mask(texture >= 0 for texture in self.textures)

@@ -45,7 +45,7 @@ class TriangleOrder:
             mesh = scene.meshes[scene.instances[batch.instance].mesh]
             if batch.instance in geometry.own or not 1 < mesh.triangle_count <= LARGEST:
                 continue
-            corners = mesh.indices.reshape(-1, 3)
+            corners = mesh.indices.astype("<u4").reshape(-1, 3)
             centers = mesh.positions[corners].mean(axis=1, dtype=np.float64)
             number = len(self._meshes)
             self._meshes[batch.instance] = SortedMesh(number, first, corners, centers)
@@ -80,7 +80,7 @@ class TriangleOrder:
         matrix = world_from_local.astype(np.float64)
         offset = mesh.centers @ matrix[:3, :3].T + (matrix[:3, 3] - eye)
         order = np.argsort(-np.einsum("ij,ij->i", offset, offset), kind="stable")
-        self._indices.write(mesh.indices[order].astype("<u4"), 4 * mesh.first_index)
+        self._indices.write(mesh.indices.take(order, axis=0), 4 * mesh.first_index)
 
     def draw(self, encoder: Encoder, instance: int) -> None:
         """Draw one of them, textures and state as they are."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -38,9 +38,17 @@ class Pose:
     cameras: list[Camera]
 
 
-def evaluate(scene: Scene, time_s: float) -> Pose:
-    """The scene's pose at `time_s` seconds. Time before 0 counts as 0 for what does not loop."""
-    numbers = [n for n, instance in enumerate(scene.instances) if instance.dynamic]
+def dynamic_instances(scene: Scene) -> list[int]:
+    """Their numbers, ascending."""
+    return [n for n, instance in enumerate(scene.instances) if instance.dynamic]
+
+
+def evaluate(scene: Scene, time_s: float, dynamic: Sequence[int] | None = None) -> Pose:
+    """The scene's pose at `time_s` seconds. Time before 0 counts as 0 for what does not loop.
+
+    `dynamic`: the `dynamic_instances`, where the caller knows them.
+    """
+    numbers = dynamic_instances(scene) if dynamic is None else dynamic
     moving = [scene.instances[n] for n in numbers]
     worlds = np.array([i.world_from_local for i in moving], np.float32).reshape(-1, 4, 4)
     visible = np.ones(len(numbers), np.bool_)
@@ -59,7 +67,7 @@ def evaluate(scene: Scene, time_s: float) -> Pose:
     visible[placed] = nodes.visible[node_of[placed]] & ~singular(world[node_of[placed]])
     joints: dict[int, F32] = {}
     matrices = [world[s.joints] @ s.inverse_bind for s in motion.skins]
-    for k in np.flatnonzero(skinned):
+    for k in np.flatnonzero(skinned).tolist():
         held = matrices[moving[k].skin]
         joints[numbers[k]] = held.astype(np.float32)
         shown = moving[k].node < 0 or nodes.visible[moving[k].node]
@@ -79,14 +87,17 @@ def evaluate(scene: Scene, time_s: float) -> Pose:
 class LastPose:
     """The pose of a scene that is asked for again and again while time stands still."""
 
-    def __init__(self) -> None:
+    def __init__(self, scene: Scene) -> None:
+        self._scene = scene
+        self._dynamic = dynamic_instances(scene)
         self._time_s: float | None = None
         self._lights: list[Light] = []
         self._pose: Pose | None = None
 
-    def at(self, scene: Scene, time_s: float) -> Pose | None:
+    def at(self, time_s: float) -> Pose | None:
         """The scene's pose, the very object as before where time and the scene's lights are the
         same; None where nothing can move."""
+        scene = self._scene
         if scene.motion is None:
             return None
         same = len(self._lights) == len(scene.lights) and all(
@@ -94,7 +105,7 @@ class LastPose:
         )
         if self._pose is None or time_s != self._time_s or not same:
             self._time_s, self._lights = time_s, list(scene.lights)
-            self._pose = evaluate(scene, time_s)
+            self._pose = evaluate(scene, time_s, self._dynamic)
         return self._pose
 
 

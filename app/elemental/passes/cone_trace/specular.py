@@ -30,6 +30,8 @@ UPSAMPLE = {
     for show in (False, True)
 }
 TRACE = Compute("cone_trace/specular.comp.glsl")
+NOTHING_LISTED = (0, 1, 1, 0)
+"""struct SpecularCounts: work groups along x, y and z, pixels."""
 
 
 @dataclass(frozen=True)
@@ -77,8 +79,7 @@ class PixelList:
     def empty(cls, g: Graph, name: str, capacity: int) -> PixelList:
         """Nothing listed yet; the dispatch over it grows in x, then in y."""
         counts = g.buffer(f"{name}.counts", int(layouts().struct("SpecularCounts").itemsize))
-        g.clear_buffer(counts, 0)
-        g.clear_buffer(counts, 1, offset=4, size=8)
+        g.clear_buffer(counts, NOTHING_LISTED)
         return cls(counts, g.buffer(f"{name}.pixels", 4 * capacity))
 
     def refs(self, block: str = "Specular") -> dict[str, Ref]:

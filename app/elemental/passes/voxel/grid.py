@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -84,12 +85,12 @@ class Grid:
         coarser = range(first.leaf_level - 1, REGION_LEVEL, -1)
         return first, *(cls.fit(bounds, resolution, regions, finest) for finest in coarser)
 
-    @property
+    @cached_property
     def leaf_level(self) -> int:
         """The finest leaf level of any region."""
         return int(self.region_levels.max())
 
-    @property
+    @cached_property
     def coarsest_leaf(self) -> int:
         """The coarsest leaf level of any region."""
         return int(self.region_levels.min())
@@ -132,7 +133,7 @@ class Grid:
         side_log2 = exponent if exponent <= self.top_level + 1 else exponent - 1
         return 1 if side_log2 < 2 else 8 ** (side_log2 - 2)
 
-    @property
+    @cached_property
     def block_count(self) -> int:
         """64-node blocks of all levels together."""
         return self.first_block(self.leaf_level + 1)
@@ -147,7 +148,7 @@ class Grid:
         """64-node blocks, and one more for each group of them (lib/node_blocks.glsl)."""
         return self.block_count + self.scan_groups
 
-    @property
+    @cached_property
     def point_block_count(self) -> int:
         """64-point blocks of the lattices of all levels together."""
         return self.first_block(self.leaf_level + 2)
