@@ -117,6 +117,15 @@ def overlaps(a: Tile, b: Tile) -> bool:
     return a.layer == b.layer and apart < a.side + b.side
 
 
+def test_shares_that_hold_are_those_that_would_be_found_anew() -> None:
+    lights, path = row(20), np.linspace(0.0, -30.0, 60)
+    keeping, finding = ShadowBudget(16, 1024, 3), ShadowBudget(16, 1024, 3)
+    held = [share(keeping, lights, eye_z) for eye_z in path]
+    found = [share(finding, [replace(light) for light in lights], eye_z) for eye_z in path]
+    assert held == found
+    assert 5 < len({id(shares) for shares in held}) < len(path) - 5
+
+
 def test_tiles_never_overlap_and_stay_where_they_are() -> None:
     rng = np.random.default_rng(2)
     pool, held, moved = TilePool(6, 64), dict[Any, Tile](), 0

@@ -122,10 +122,7 @@ class ShadowMaps:
         self.soft = bool((plan.lights["penumbra_radius"] > 0.0).any() and len(plan.views))
         self.culled, self.light_words = plan.culled, -(-len(plan.lights) // 32)
         self.counts = {"shadow_maps": len(plan.views), "lights_without_shadow": plan.unshadowed}
-        light_fields = [name for name in plan.lights.dtype.names or () if "cascade" not in name]
-        fixed = plan.views[: plan.fixed][["clip_from_world", "texel"]]
-        shapes = self._shapes.revision
-        self.lamp_key = (plan.lights[light_fields].tobytes(), fixed.tobytes(), shapes)
+        self.lamp_key = (plan.key, self._shapes.revision)
         self.light_key = (scene.version, self.lamp_key)
         self._forget_changed(plan, scene)
         for drawn in (self._drawn, self._still_drawn):

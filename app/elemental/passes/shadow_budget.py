@@ -16,6 +16,7 @@ import numpy as np
 
 from elemental.passes.scene_pack import Array
 from elemental.passes.shadow_fit import ViewFrustum
+from elemental.scene.lights import same_objects
 from elemental.scene.model import Light
 
 FACES = {"directional": 1, "spot": 1, "point": 6}
@@ -50,9 +51,22 @@ class ShadowBudget:
         self._most = min(HALVINGS, max(int(math.log2(resolution / LEAST_SIDE)), 0))
         self._levels: Array = np.zeros(0, np.int64)
         self._shift = -64  # below any: the first choice asks for no margin
+        self._lights: list[Light] = []
+        self._shares: Shares | None = None
 
     def share(self, lights: Sequence[Light], spheres: Array, frustum: ViewFrustum) -> Shares:
-        """spheres (L, 4): of `light_bounds`."""
+        """spheres (L, 4): of `light_bounds`. Shares hold while the lights keep their levels."""
+        if not same_objects(lights, self._lights):
+            self._lights, self._shares = list(lights), None
+        local = [n for n, light in enumerate(lights) if light.kind != "directional"]
+        local = [number for number in local if lights[number].casts_shadow]
+        last, levels = self._levels, self._level(reaches_of_picture(spheres[local], frustum))
+        if self._shares is None or not np.array_equal(levels, last):
+            self._shares = self._divide(lights, local, levels)
+        return self._shares
+
+    def _divide(self, lights: Sequence[Light], local: list[int], levels: Array) -> Shares:
+        """local: numbers of the point and spot lights with shadows; levels: of these."""
         sides = [0] * len(lights)
         layers = 0
         suns = [n for n, light in enumerate(lights) if light.kind == "directional"]
@@ -60,10 +74,7 @@ class ShadowBudget:
             if lights[number].casts_shadow and layers + 1 + self._cascades <= self._maps:
                 layers += 1 + self._cascades
                 sides[number] = self._resolution
-        local = [n for n, light in enumerate(lights) if light.kind != "directional"]
-        local = [number for number in local if lights[number].casts_shadow]
         faces = np.array([FACES[lights[number].kind] for number in local], np.int64)
-        levels = self._level(reaches_of_picture(spheres[local], frustum))
         room = self._maps - layers
         halvings = self._halve(levels, faces, room)
         shown = _fitting(halvings, levels, faces, room)

@@ -17,6 +17,7 @@ from elemental.passes.scene_pack import Array
 from elemental.passes.shadow_budget import FACES, ShadowBudget, Shares
 from elemental.passes.shadow_fit import Bounds, FittedView, ViewFrustum
 from elemental.passes.shadow_tiles import Tile, TilePool
+from elemental.scene.lights import same_objects
 from elemental.scene.model import Camera, Light
 
 CULLED_FROM = 5
@@ -42,10 +43,10 @@ class ShadowSettings:
 @dataclass(frozen=True)
 class ShadowPlan:
     """lights (L,) of the struct Light, never empty; views (V,) of the struct ShadowView, the
-    cascades behind the `fixed` ones, which do not depend on the camera; names and tiles by view;
+    cascades behind those that do not depend on the camera; names and tiles by view;
     `layers` that no camera exceeds; unshadowed: lights that the budget leaves without a map.
     bounds (L, 4) of `light_bounds`; culled: whether they are worth it. shapes: of
-    `shapes_of`."""
+    `shapes_of`. key: differs when a light or a fixed view does."""
 
     lights: Array
     bounds: Array
@@ -53,10 +54,21 @@ class ShadowPlan:
     views: Array
     names: list[str]
     tiles: list[Tile]
-    fixed: int
     layers: int
     unshadowed: int
     shapes: list[Shape]
+    key: Hashable
+
+
+@dataclass(frozen=True)
+class PlacedLights:
+    """structs (L,) of the struct Light; bounds and key: of the ShadowPlan. They hold while each
+    sun, by its number, has as many `cascades`."""
+
+    cascades: dict[int, int]
+    structs: Array
+    bounds: Array
+    key: Hashable
 
 
 @dataclass(frozen=True)
@@ -96,7 +108,7 @@ class ShadowPlanner:
     _spheres: Array = field(default_factory=lambda: light_bounds([], []))
     _fitted: dict[int, tuple[Hashable, list[FittedView]]] = field(default_factory=dict)
     _fixed: FixedViews | None = None
-    _packed: tuple[dict[int, int], Array, Array] | None = None
+    _packed: PlacedLights | None = None
 
     def __post_init__(self) -> None:
         s = self.settings
@@ -119,18 +131,18 @@ class ShadowPlanner:
         fixed = self._fixed_views(lights, shares, bounds)
         cascades = self._cascades(lights, fixed, bounds, frustum)
         moved = [view for views in cascades.values() for view in views]
-        packed, spheres = self._pack(lights, fixed, {n: len(v) for n, v in cascades.items()})
+        placed = self._pack(lights, fixed, {n: len(v) for n, v in cascades.items()})
         return ShadowPlan(
-            lights=packed,
-            bounds=spheres,
+            lights=placed.structs,
+            bounds=placed.bounds,
             culled=self._culled,
             views=np.concatenate([fixed.packed, _pack_views(moved, self.settings.resolution)]),
             names=fixed.names + [view.name for view in moved],
             tiles=fixed.tiles + [view.tile for view in moved],
-            fixed=len(fixed.names),
             layers=self._pool.layers,
             unshadowed=shares.unshadowed,
             shapes=self._shapes,
+            key=placed.key,
         )
 
     @property
@@ -140,9 +152,7 @@ class ShadowPlanner:
 
     def _take_over(self, lights: Sequence[Light]) -> None:
         """Look at lights that are not those of the last frame."""
-        known = self._lights
-        same = all(light is last for light, last in zip(lights, known, strict=False))
-        if same and len(lights) == len(known):
+        if same_objects(lights, self._lights):
             return
         self._lights = list(lights)
         self._reaches = [reach(light, self.settings.cutoff) for light in lights]
@@ -212,9 +222,9 @@ class ShadowPlanner:
 
     def _pack(
         self, lights: Sequence[Light], fixed: FixedViews, cascades: dict[int, int]
-    ) -> tuple[Array, Array]:
-        """(the struct Light of each, their bounds); cascades: how many by the number of the sun."""
-        if self._packed is None or self._packed[0] != cascades:
+    ) -> PlacedLights:
+        """cascades: how many by the number of the sun."""
+        if self._packed is None or self._packed.cascades != cascades:
             spans = [(0, 0)] * len(lights)
             first = len(fixed.names)
             for number, count in cascades.items():
@@ -226,8 +236,14 @@ class ShadowPlanner:
                 spheres = light_bounds(lights, ranges)
             penumbras = self.settings.penumbras
             structs = pack_lights(lights, fixed.first_view, spans, ranges, penumbras)
-            self._packed = cascades, structs, spheres
-        return self._packed[1:]
+            self._packed = PlacedLights(cascades, structs, spheres, _key(structs, fixed.packed))
+        return self._packed
+
+
+def _key(lights: Array, fixed: Array) -> Hashable:
+    """Of the structs Light, but for what follows the camera, and of the fixed views."""
+    fields = [name for name in lights.dtype.names or () if "cascade" not in name]
+    return lights[fields].tobytes(), fixed[["clip_from_world", "texel"]].tobytes()
 
 
 def _fit(light: Light, bounds: Bounds, side: int) -> list[FittedView]:

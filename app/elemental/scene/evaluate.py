@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from elemental.scene.lights import same_objects
 from elemental.scene.model import Camera, Light, Scene
 from elemental.scene.motion import F32, F64, Indices, Motion, Tracks
 from elemental.scene.placement import forward, rigid, singular
@@ -100,10 +101,8 @@ class LastPose:
         scene = self._scene
         if scene.motion is None:
             return None
-        same = len(self._lights) == len(scene.lights) and all(
-            was is light for was, light in zip(self._lights, scene.lights, strict=True)
-        )
-        if self._pose is None or time_s != self._time_s or not same:
+        same = time_s == self._time_s and same_objects(self._lights, scene.lights)
+        if self._pose is None or not same:
             self._time_s, self._lights = time_s, list(scene.lights)
             self._pose = evaluate(scene, time_s, self._dynamic)
         return self._pose

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import operator
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
@@ -88,6 +90,11 @@ class Light:
         up = np.cross(right, direction)
         axis = math.cos(self.roll) * right + math.sin(self.roll) * up
         return axis.astype(np.float32)
+
+
+def same_objects(some: Sequence[Light], others: Sequence[Light]) -> bool:
+    """Whether they are the very same, in the same order: a light that changes is replaced."""
+    return len(some) == len(others) and all(map(operator.is_, some, others))
 
 
 def checked(light: Light) -> Light:
