@@ -15,7 +15,7 @@ from functools import partial
 
 import numpy as np
 
-from elemental.core.layout import Block, layouts, pack
+from elemental.core.layout import Block
 from elemental.gpu.device import Device
 from elemental.gpu.encode import Encoder
 from elemental.gpu.formats import D32F
@@ -252,9 +252,8 @@ def _rectangle(tile: Tile) -> tuple[int, int, int, int]:
 
 def _draw_view(g: Graph, maps: ShadowMaps, scene: GpuScene, plan: ShadowPlan, number: int) -> None:
     tile, name = plan.tiles[number], f"shadow.{plan.names[number]}"
-    clip_from_world = plan.views[number]["clip_from_world"].T
     still = maps.still_target(plan, number)
-    draw = partial(_draw_casters, g, scene, clip_from_world, _viewer(number), tile)
+    draw = partial(_draw_casters, g, scene, plan.blocks[number], _viewer(number), tile)
     if still is None:
         draw(name, maps.target(plan, number), None)
         return
@@ -268,7 +267,7 @@ def _draw_view(g: Graph, maps: ShadowMaps, scene: GpuScene, plan: ShadowPlan, nu
 def _draw_casters(
     g: Graph,
     scene: GpuScene,
-    clip_from_world: Array,
+    block: Block,
     viewer: str,
     tile: Tile,
     name: str,
@@ -277,14 +276,14 @@ def _draw_casters(
 ) -> None:
     """The depth of what can, or can't, move, into an empty map; what can move on top of the rest.
 
-    ``dynamic`` None: of everything.
+    ``dynamic`` None: of everything. ``block``: ShadowPass.
     """
 
     def draw_opaque(enc: Encoder) -> None:
         scene.draw_positions(enc, seen_by=viewer, dynamic=dynamic)
 
     reads = {"u_instances": scene.instances}
-    params = {"ShadowPass": pack(layouts().block("ShadowPass"), clip_from_world=clip_from_world)}
+    params = {"ShadowPass": block}
     place = _rectangle(tile)
     g.raster(
         DEPTH, name, depth=target, reads=reads, params=params, state=STATE,

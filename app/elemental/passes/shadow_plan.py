@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from elemental.core.layout import layouts, pack_array
+from elemental.core.layout import Block, layouts, pack, pack_array
 from elemental.passes import shadow_fit
 from elemental.passes.camera_view import clip_range
 from elemental.passes.light_pack import light_bounds, pack_lights, reach
@@ -43,15 +43,16 @@ class ShadowSettings:
 @dataclass(frozen=True)
 class ShadowPlan:
     """lights (L,) of the struct Light, never empty; views (V,) of the struct ShadowView, the
-    cascades behind those that do not depend on the camera; names and tiles by view;
-    `layers` that no camera exceeds; unshadowed: lights that the budget leaves without a map.
-    bounds (L, 4) of `light_bounds`; culled: whether they are worth it. shapes: of
-    `shapes_of`. key: differs when a light or a fixed view does."""
+    cascades behind those that do not depend on the camera; blocks ShadowPass, names and tiles by
+    view; `layers` that no camera exceeds; unshadowed: lights that the budget leaves without a map.
+    bounds (L, 4) of `light_bounds`; culled: whether they are worth it. shapes: of `shapes_of`.
+    key: differs when a light or a fixed view does."""
 
     lights: Array
     bounds: Array
     culled: bool
     views: Array
+    blocks: list[Block]
     names: list[str]
     tiles: list[Tile]
     layers: int
@@ -83,11 +84,12 @@ class PlacedView:
 @dataclass(frozen=True)
 class FixedViews:
     """Views that no camera moves. first_view by light, -1 without one; packed (V,) of the struct
-    ShadowView; names and tiles by view. They hold while `key` does."""
+    ShadowView; blocks ShadowPass, names and tiles by view. They hold while `key` does."""
 
     key: Hashable
     first_view: list[int]
     packed: Array
+    blocks: list[Block]
     names: list[str]
     tiles: list[Tile]
 
@@ -137,6 +139,7 @@ class ShadowPlanner:
             bounds=placed.bounds,
             culled=self._culled,
             views=np.concatenate([fixed.packed, _pack_views(moved, self.settings.resolution)]),
+            blocks=fixed.blocks + [_block(view) for view in moved],
             names=fixed.names + [view.name for view in moved],
             tiles=fixed.tiles + [view.tile for view in moved],
             layers=self._pool.layers,
@@ -180,6 +183,7 @@ class ShadowPlanner:
             key,
             first_view,
             _pack_views(placed, self.settings.resolution),
+            [_block(view) for view in placed],
             [view.name for view in placed],
             [view.tile for view in placed],
         )
@@ -281,6 +285,11 @@ def _frustum(camera: Camera, size: tuple[int, int], bounds: Bounds) -> ViewFrust
         tangent=tangent,
         corner_tangent=math.hypot(tangent, tangent * size[0] / size[1]),
     )
+
+
+def _block(view: PlacedView) -> Block:
+    """The block ShadowPass of a view's draws."""
+    return pack(layouts().block("ShadowPass"), clip_from_world=view.fitted.clip_from_world)
 
 
 def _pack_views(placed: Sequence[PlacedView], resolution: int) -> Array:
