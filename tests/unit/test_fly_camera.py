@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from elemental.core import transforms
 from elemental.scene.model import Camera
-from elemental.ui.fly_camera import DIAGONALS_PER_S, MAX_PITCH, SPEED_RANGE, FlyCamera
+from elemental.ui.fly_camera import LEAST_NEAR, MAX_PITCH, SPEED_PER_NOTCH, SPEED_RANGE, FlyCamera
 
 
 def camera_at(eye: tuple[float, float, float], target: tuple[float, float, float]) -> Camera:
@@ -44,8 +44,10 @@ def test_who_flies_slowly_sees_what_is_near() -> None:
     assert fly.camera().near == 0.1
     fly.scroll(5.0)
     assert fly.camera().near == 0.1  # flying fast hides nothing
+    fly.scroll(-9.0)
+    assert fly.camera().near == pytest.approx(0.1 * SPEED_PER_NOTCH**-4)
     fly.scroll(-1e3)
-    assert fly.camera().near == pytest.approx(0.1 * SPEED_RANGE[0] / DIAGONALS_PER_S)
+    assert fly.camera().near == pytest.approx(0.1 * LEAST_NEAR)  # at the slowest
 
 
 @pytest.mark.parametrize("y", [1.0, -1.0])

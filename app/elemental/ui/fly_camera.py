@@ -21,6 +21,10 @@ DIAGONALS_PER_S = 0.1
 """First speed: ten seconds from end to end of the scene."""
 SPEED_RANGE = (1e-4, 10.0)
 """Slowest and fastest speed in scene diagonals a second."""
+LEAST_NEAR = 0.03
+"""Of the lens's near plane, for who flies slowest: closer, depths far away would run together, and
+`open_reach` of the sun's shadows, which follows the near plane, would shrink to nothing [inferred].
+"""
 FAST_FACTOR = 4.0
 """Shift multiplies the speed by this, Alt divides by it."""
 
@@ -97,10 +101,10 @@ class FlyCamera:
         """
         eye = self.position
         view_from_world = transforms.look_at(eye, eye + self.axes()[2])
-        slowness = min(self.speed / (DIAGONALS_PER_S * self.diagonal), 1.0)
+        slowness = self.speed / (DIAGONALS_PER_S * self.diagonal)
         return replace(
             self.lens,
             world_from_view=transforms.inverse(view_from_world),
-            near=slowness * self.lens.near,
+            near=min(max(slowness, LEAST_NEAR), 1.0) * self.lens.near,
             aspect=None,
         )
