@@ -212,8 +212,8 @@ def check_output(flag: str, path: Path, suffixes: tuple[str, ...]) -> None:
 
 FRAME_NUMBER = re.compile(r"%0?([0-9]{0,2})d")
 WIDER_NUMBER = re.compile(r"%[0-9]{3,}d")
-OTHER_CONVERSION = re.compile(r"%[-+ #0-9.]*[A-Za-z](?![A-Za-z])")
-"""Of printf, or nearly one; 100%.png and 50%grey.png are names."""
+OTHER_CONVERSION = re.compile(r"%[-+#0-9]*(?:\.[0-9]+)?[diouxXeEfFgGaAcs](?=\.|$)")
+"""Of printf, at the end of a name or of a part before a dot; 100% a.png and 5%a_1.png are names."""
 
 
 def frame_file(pattern: Path, frame: int) -> Path:
