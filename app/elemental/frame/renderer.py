@@ -145,7 +145,8 @@ class Renderer:
     def set_regions(self, regions: Sequence[Region]) -> None:
         """Replace the scene's regions, and with them leaf levels, from the next frame on."""
         self.scene.regions = list(regions)
-        if self._voxels is not None and not self._voxels.set_grid(self._grids()[0]):
+        grid, *coarser = self._grids()
+        if self._voxels is not None and not self._voxels.set_grid(grid, coarser):
             self._drop_voxels()  # made anew
 
     def _update_area_lights(self) -> None:
@@ -156,7 +157,7 @@ class Renderer:
         if self._voxels is not None:
             self._voxels.release()
             self._voxels = None
-            self._held.forget()
+            self._held.release()
 
     def _fit_emission(self) -> None:
         """Have voxels made anew where materials emit more than they have room for."""

@@ -91,7 +91,7 @@ class Executor:
             queries = device.timers.begin(len(passes))
             named = device.names_passes
             started = time.perf_counter()
-            for node, bound, query in zip(passes, plan.bound, queries, strict=False):
+            for node, bound, query in zip(passes, plan.bound, queries[:-1], strict=True):
                 if named:
                     self._push(node.name)
                 gl.glQueryCounter(query, c.TIMESTAMP)
@@ -146,6 +146,8 @@ class Executor:
         except BaseException:
             for handle in held:
                 self._give_back(handle)
+            for handle in plan.handles:
+                handle.physical = None
             raise
 
     def _give_back(self, handle: AnyHandle) -> None:

@@ -119,6 +119,27 @@ def test_a_crowd_that_outgrows_the_pools(device: Device, monkeypatch: pytest.Mon
     r.release()
 
 
+def test_regions_chosen_while_things_move_outlive_a_fall(
+    device: Device, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene = world(40, seed=4)
+    walk = Walk(scene, np.random.default_rng(2), 0.5)
+    walk.visible[:] = True
+    few = replace(walk.pose(), visible=np.zeros(40, bool))
+    r = renderer(device, scene, 128)
+    picture(r, 0, few)
+    made = r._voxels
+    low, high = scene.bounds()
+    r.set_regions([Region(low, (low + high) / 2, -1)])
+    counts = picture(r, 1, few)[2]
+    assert r._voxels is made, "kept fragments are marked anew"
+    limit_to(monkeypatch, interior=int(counts.interior * 1.4))
+    picture(r, 2, walk.pose())
+    assert picture(r, 3, walk.pose())[1]["octree_levels_dropped"] > 0
+    assert not made.octree.grid.one_leaf_level
+    r.release()
+
+
 def test_every_grid_of_a_ladder_is_one_level_coarser() -> None:
     bounds = vector(-1, -1, -1), vector(1, 1, 1)
     regions = [Region(vector(-1, -1, -1), vector(0, 1, 1), 2)]

@@ -112,8 +112,9 @@ class VoxelLighting:
         self._built_version = self._lit_by = None
         self._regridded = False
 
-    def set_grid(self, grid: Grid) -> bool:
-        """Take other regions' leaf levels from the next frame on. Returns whether it can.
+    def set_grid(self, grid: Grid, coarser: Sequence[Grid] = ()) -> bool:
+        """Take other regions' leaf levels from the next frame on; ``coarser`` as when it was made.
+        Returns whether it can.
 
         It can where fragments are kept, stay on the same finest lattice, and fit: they are marked
         anew in pools of the size that they ask for. It is counted, with a wait; nothing is drawn.
@@ -127,6 +128,7 @@ class VoxelLighting:
         room, holds_all = self._holds(grid, sizing.count_again(old, grid, kept.fragments))
         if not holds_all or self._ladder.dropped:
             return False
+        self._ladder = Ladder((grid, *coarser))
         room = replace(room, fragments=old.capacity.fragments)
         self._allocate(grid, room, old.max_emission)
         assert self._kept is not None
