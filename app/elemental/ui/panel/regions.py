@@ -26,8 +26,8 @@ MEANINGS = {-2: "4 x coarser", -1: "2 x coarser", 0: "as the rest", 1: "2 x fine
 GIZMOS = ("Move", "Scale")
 NEW_SHARE = 0.25
 """Of the scene's longest side, for a new region: two of the eight cells."""
-LEAST_SIDE = (1e-3, 1e-6)
-"""Of a region: m, and as a part of how far off it is, so that 32 bits hold it."""
+LEAST_SIDE = (1e-3, 1e-5)
+"""Of a region: m, and as a part of how far off it is, so that six digits (`_three`) hold it."""
 
 Bounds = tuple[FloatArray, FloatArray]
 Corner = npt.NDArray[np.floating]
@@ -131,7 +131,8 @@ def _fields(w: Widgets, view: RegionView, document: Document, region: Region) ->
 
 
 def _region(low: Corner, high: Corner, level_offset: int) -> Region:
-    high = np.maximum(high, low + _least(low))
+    low = np.array(_three(low))
+    high = np.maximum(_three(high), low + _least(low))
     return Region(_corner(low), _corner(high), level_offset)
 
 
