@@ -16,6 +16,10 @@ from elemental.scene.model import FloatArray, Region
 from elemental.scene.scene_file import parse_scene_file
 from elemental.scene.tables.regions import RegionTable
 
+CELLS_REACH = 0.571
+"""From the scene's middle to the farthest side of its 8^3 cells, in its longest sides: where the
+octree has 64 points along the scene, the fewest (`Grid.fit`); with more, cells reach less far."""
+
 
 def regions_of(tables: Sequence[RegionTable]) -> list[Region]:
     """The regions of a scene file's checked tables."""
@@ -26,9 +30,11 @@ def regions_of(tables: Sequence[RegionTable]) -> list[Region]:
 
 
 def is_outside(region: Region, bounds: tuple[FloatArray, FloatArray]) -> bool:
-    """Whether a region holds nothing of the scene, whose bounds are (min, max), m."""
-    low, high = bounds
-    return bool((region.maximum < low).any() or (region.minimum > high).any())
+    """Whether a region overlaps none of the 8^3 cells that regions take hold of: they fill a cube
+    around the scene, whose bounds are (min, max), m."""
+    low, high = (corner.astype(np.float64) for corner in bounds)
+    middle, reach = (low + high) / 2, CELLS_REACH * (high - low).max()
+    return bool((region.maximum < middle - reach).any() or (region.minimum > middle + reach).any())
 
 
 def idle_regions(
