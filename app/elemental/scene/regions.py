@@ -57,11 +57,12 @@ def with_regions(text: str, regions: Sequence[Region], path: Path) -> str:
     known = [_table_of(region) for region in before]
     if wanted == known:
         return text
-    for edit in (_merge, _replace):  # the first keeps more comments, and not every layout bears it
-        edited = toml_edit.edited(text, partial(edit, before=known, after=wanted))
-        if edited is not None and _reads_as(edited, wanted, path):
-            return edited
-    raise InputError(path, "regions", "can't be changed in this file's layout")
+    # The first keeps more comments, and not every layout bears it.
+    edits = [partial(edit, before=known, after=wanted) for edit in (_merge, _replace)]
+    made = toml_edit.edited_as(text, edits, partial(_reads_as, wanted=wanted, path=path))
+    if made is None:
+        raise InputError(path, "regions", "can't be changed in this file's layout")
+    return made
 
 
 def _reads_as(text: str, wanted: Sequence[dict[str, Any]], path: Path) -> bool:

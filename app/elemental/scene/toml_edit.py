@@ -6,7 +6,7 @@ the text that comes out before they trust it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -51,6 +51,17 @@ def edited(text: str, edit: Callable[[Any], None]) -> str | None:
         return tomlkit.dumps(document)
     except (CannotEditError, TOMLKitError, ValueError, KeyError, TypeError, AttributeError):
         return None
+
+
+def edited_as(
+    text: str, edits: Iterable[Callable[[Any], None]], reads: Callable[[str], bool]
+) -> str | None:
+    """``text`` after the first of ``edits`` that makes what ``reads`` as was meant; None: none."""
+    for edit in edits:
+        made = edited(text, edit)
+        if made is not None and reads(made):
+            return made
+    return None
 
 
 def assign(table: Any, key: str, value: Any) -> None:

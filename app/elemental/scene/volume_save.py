@@ -35,11 +35,12 @@ def with_volumes(text: str, volumes: Sequence[Volume], path: Path) -> str:
     before = volumes_of(parse_scene_file(text, path).volumes, path)
     if same_volumes(before, volumes):
         return text
-    for edit in (_merge, _replace):  # the first keeps more comments, and not every layout bears it
-        edited = toml_edit.edited(text, partial(edit, before=before, volumes=volumes))
-        if edited is not None and _reads_as(edited, volumes, path):
-            return edited
-    raise InputError(path, "volumes", "can't be changed in this file's layout")
+    # The first keeps more comments, and not every layout bears it.
+    edits = [partial(edit, before=before, volumes=volumes) for edit in (_merge, _replace)]
+    made = toml_edit.edited_as(text, edits, partial(_reads_as, volumes=volumes, path=path))
+    if made is None:
+        raise InputError(path, "volumes", "can't be changed in this file's layout")
+    return made
 
 
 def same_volumes(one: Sequence[Volume], other: Sequence[Volume]) -> bool:
