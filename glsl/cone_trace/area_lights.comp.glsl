@@ -1,6 +1,6 @@
-// Emissive parallelograms, one cone a pixel: each of the nine of the interleaved 3x3 pattern looks at
-// another part of their light. [Mittring12 "Voxel Lighting": shadowed area lights from emissive
-// materials], [Segovia06]
+// Emissive parallelograms and balls: each pixel of the interleaved 3x3 pattern looks at another part of
+// their light, through a cone or in the shadow maps of that part. [Mittring12 "Voxel Lighting": shadowed
+// area lights from emissive materials], [Segovia06]
 
 #include "lib/area_shadow.glsl"
 #include "lib/interleave.glsl"
@@ -27,7 +27,7 @@ void main() {
         vec3 p_ws = position_ws_at((vec2(own.pixel) + 0.5) * u_view.viewport_px.zw, depth);
         AreaSample s = sample_area_lights(p_ws, normal, own.cone);
         if (s.face >= 0 && dot(s.point_ws - p_ws, normal) > 0.0) {
-            float visible = area_visibility(p_ws, normal, s.face, s.point_ws, s.radius);
+            float visible = area_visibility(p_ws, normal, s);
             result = u_area_lights.inverse_radiance * vec4(s.irradiance * visible, luminance(s.irradiance));
         }
     }

@@ -96,13 +96,14 @@ vec3 area_irradiance(vec3 p_ws, vec3 normal) {
     return sum;
 }
 
-// The faces' light is seen through so many cones, each for a part of it: see interleave.glsl.
+// The faces' light is looked at in so many parts, one a pixel: see interleave.glsl.
 const int AREA_STRATA = 9;
 
 struct AreaSample {
     int face;           // -1: no light arrives
     vec3 point_ws;      // the middle of the part
     float radius;       // of a disc as large as the part, m
+    int part;           // of the face's 3x3 in which that point is
     vec3 irradiance;    // of the part without shadow, times AREA_STRATA
 };
 
@@ -127,13 +128,14 @@ AreaSample sample_area_lights(vec3 p_ws, vec3 normal, int stratum) {
         total += from_face[i];
         if (from_face[i] > from_face[strongest]) strongest = i;
     }
-    if (total <= 0.0) return AreaSample(-1, vec3(0.0), 0.0, vec3(0.0));
+    if (total <= 0.0) return AreaSample(-1, vec3(0.0), 0.0, 0, vec3(0.0));
     AreaSample s;
     if (from_face[strongest] > 0.999 * total) {
         AreaLight part = part_of_face(seen_from(u_area_lights.faces[strongest], p_ws), stratum);
         s.face = strongest;
         s.point_ws = part.corner_ws + 0.5 * (part.edge_u_ws + part.edge_v_ws);
         s.radius = sqrt(part.area_m2 * INVERSE_PI);
+        s.part = stratum;
         s.irradiance = part.radiance * (face_irradiance(part, p_ws, normal) * float(AREA_STRATA));
         return s;
     }
@@ -147,6 +149,7 @@ AreaSample sample_area_lights(vec3 p_ws, vec3 normal, int stratum) {
     s.face = chosen;
     s.point_ws = face.corner_ws + along * face.edge_u_ws + across * face.edge_v_ws;
     s.radius = sqrt(face.area_m2 * INVERSE_PI / parts);
+    s.part = min(int(along * 3.0), 2) + 3 * min(int(across * 3.0), 2);
     s.irradiance = face.radiance * (total / luminance(face.radiance));
     return s;
 }

@@ -6,6 +6,7 @@
 
 const int AREA_SAMPLES = 3;  // of the nine parts of the area lights' light
 
+#if AREA_MAPS == NO_AREA_MAPS
 // Light of emissive parallelograms: their closed form, times the share of it that samples find.
 vec3 gathered_area_light(vec3 p_ws, vec3 normal) {
     float arrives = 0.0;
@@ -15,10 +16,22 @@ vec3 gathered_area_light(vec3 p_ws, vec3 normal) {
         if (s.face < 0 || dot(s.point_ws - p_ws, normal) <= 0.0) continue;
         float light = luminance(s.irradiance);
         unshadowed += light;
-        arrives += light * area_visibility(p_ws, normal, s.face, s.point_ws, s.radius);
+        arrives += light * area_visibility(p_ws, normal, s);
     }
     return unshadowed > 0.0 ? area_irradiance(p_ws, normal) * (arrives / unshadowed) : vec3(0.0);
 }
+#else
+// The same, of each light by itself.
+vec3 gathered_area_light(vec3 p_ws, vec3 normal) {
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < u_area_lights.count; ++i) {
+        AreaLight face = seen_from(u_area_lights.faces[i], p_ws);
+        float unshadowed = face_irradiance(face, p_ws, normal);
+        if (unshadowed > 0.0) sum += face.radiance * (unshadowed * whole_visibility(p_ws, normal, i, 0.0));
+    }
+    return sum;
+}
+#endif
 
 // Irradiance / pi.
 vec3 gathered_diffuse(vec3 p_ws, vec3 normal) {

@@ -12,7 +12,7 @@
 #include "lib/cone_directions.glsl"
 #include "lib/diffuse_cone.glsl"
 
-// Cosine-weighted mean of the radiance that comes from the faces of area lights, a cone each.
+// Cosine-weighted mean of the radiance that comes from the faces of area lights, each seen as a whole.
 // What lies within AREA_GAP_VOXELS of a face's plane shares voxels with it, and is taken for the face.
 const float AREA_GAP_VOXELS = 1.5;
 
@@ -23,8 +23,7 @@ vec3 area_light_radiance(vec3 p_ws, vec3 normal, float spacing) {
         AreaLight face = seen_from(u_area_lights.faces[i], p_ws);
         float unshadowed = face_irradiance(face, p_ws, normal);
         if (unshadowed <= 0.0) continue;
-        vec3 middle = face.corner_ws + 0.5 * (face.edge_u_ws + face.edge_v_ws);
-        sum += face.radiance * (unshadowed * area_visibility(p_ws, normal, i, middle, sqrt(face.area_m2 * INVERSE_PI)));
+        sum += face.radiance * (unshadowed * whole_visibility(p_ws, normal, i, spacing));
     }
     return sum * INVERSE_PI;
 }

@@ -1,5 +1,6 @@
 // Emissive parallelograms: points are corner + s edge_u + t edge_v with s, t in 0..1. And balls.
 const int AREA_LIGHTS_MAX = 16;
+const int AREA_POINTS = 9;  // that a light's shadow maps look from
 
 struct AreaLight {
     vec3 corner_ws;     // of a ball its centre
@@ -9,7 +10,7 @@ struct AreaLight {
     vec3 edge_v_ws;
     float ball_radius;  // m; 0: a parallelogram
     vec3 radiance;      // W/(m^2 sr)
-    float reserved1;
+    int shadow_view;    // of its first point's first map in ShadowViews, or -1: no maps
 };
 
 layout(std140) uniform AreaLights {

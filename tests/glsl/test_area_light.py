@@ -97,7 +97,9 @@ def test_the_back_is_dark_unless_both_sides_emit(device: Device) -> None:
 def ball(centre: tuple[float, float, float], radius: float, radiance: float = 1.0) -> AreaLight:
     none = np.zeros(3, np.float32)
     edge = np.array([radius, 0, 0], np.float32)
-    return AreaLight(0, np.array(centre, np.float32), edge, none, np.full(3, radiance), False)
+    return AreaLight(
+        0, np.array(centre, np.float32), edge, none, np.full(3, radiance), False, is_ball=True
+    )
 
 
 def test_a_ball_above_the_horizon(device: Device) -> None:

@@ -36,7 +36,10 @@ def declare_frame(g: Graph, systems: Systems, request: Request) -> AnyTexture:
     environment = request.environment if s["sky.enabled"] else None
     sky = systems.sky.update(g, environment, s["sky.intensity"], without_sun=s["sky.sun"])
     ambient = sky.tinted(_tint(s, "ambient_cubemap.intensity", "ambient_cubemap.tint"))
-    shadows = update_shadows(g, systems.shadows, meshes, request.lights, camera=camera, size=size)
+    emitters = systems.area_lights.mapped if systems.voxels is not None else ()
+    shadows = update_shadows(
+        g, systems.shadows, meshes, request.lights, camera=camera, size=size, emitters=emitters
+    )
     octree = _light_voxels(g, systems, request, shadows, sky)
     if name in VOXEL_VIEWS and octree is not None:
         return voxel_view(g, view, octree, size, name, s["voxels.level"], s["voxels.side"])

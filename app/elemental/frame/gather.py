@@ -99,7 +99,7 @@ def _trace(
     radiance = trace_diffuse(g, view, gb, octree, sky, split, shared)
     area = None
     if systems.area_lights.lights:
-        area = (trace_area_lights(g, view, gb, octree, block), block)
+        area = (trace_area_lights(g, view, gb, octree, block, systems.shadows), block)
     diffuse, broad = combine_diffuse(
         g, view, gb, radiance, split, area, into=None if into is None else into.diffuse
     )

@@ -87,7 +87,7 @@ class Renderer:
         self.scene = scene
         self.settings = settings
         self.size = size
-        self._area_lights = AreaLightBlock(scene, settings["gi.area_lights"])
+        self._area_lights = AreaLightBlock(scene, *_area_lights(settings))
         self._last_pose = LastPose(scene)
         self._mask_drift = MaskDrift()
         self._sky_sun = SkySun()
@@ -137,7 +137,7 @@ class Renderer:
             volumes = self.scene.volumes
             self._shadows = ShadowMaps(self.device, _shadow_settings(settings, volumes))
             self.invalidate("light")
-        if "gi.area_lights" in changed:
+        if changed & {"gi.area_lights", "gi.area_shadows"}:
             self._update_area_lights()
         if changed & OCTREE_KEYS:
             self._drop_voxels()
@@ -150,7 +150,7 @@ class Renderer:
             self._drop_voxels()  # made anew
 
     def _update_area_lights(self) -> None:
-        self._area_lights.choose(self.settings["gi.area_lights"])
+        self._area_lights.choose(*_area_lights(self.settings))
         self._meshes.set_area_lights(self._area_lights.lights)
 
     def _drop_voxels(self) -> None:
@@ -223,7 +223,8 @@ class Renderer:
         assert image.physical is not None, "a kept handle has a texture once its graph has run"
         culled = self._meshes.in_view.counters
         counted = (systems.voxels, self._specular, self._post.sprites)
-        return Frame(image.physical, view in LINEAR_VIEWS, self._shadows.counts, culled, *counted)
+        shadowed = {**self._shadows.counts, "area_lights_without_maps": self._area_lights.unmapped}
+        return Frame(image.physical, view in LINEAR_VIEWS, shadowed, culled, *counted)
 
     def _systems(self, view: str, time_s: float) -> Systems:
         """What a frame's passes work on; voxels only where its view asks for indirect light."""
@@ -299,6 +300,11 @@ class Renderer:
 def max_pixels(device: Device) -> int:
     """The largest picture: the list of glossy pixels, a word each, is one storage block."""
     return device.storage_limit // 4
+
+
+def _area_lights(settings: Settings) -> tuple[bool, bool]:
+    """Whether there are area lights, and whether these get shadow maps."""
+    return settings["gi.area_lights"], settings["gi.area_shadows"] == "maps"
 
 
 def _shadow_settings(settings: Settings, volumes: Sequence[Volume]) -> ShadowSettings:

@@ -18,6 +18,7 @@ from elemental.gpu.graph import Graph
 from elemental.gpu.refs import Ref, Sampled, TextureHandle
 from elemental.gpu.shaders import Raster
 from elemental.gpu.state import RasterState
+from elemental.passes.area_lights import NO_MAPS, area_maps
 from elemental.passes.behind import grab_behind
 from elemental.passes.camera_view import box_corners
 from elemental.passes.gbuffer import VERT, GBuffer
@@ -110,7 +111,8 @@ def draw_translucent(
         reads |= octree.tracing_reads()
         blocks += [octree.params, {"AreaLights": area_lights}]
     params = {"View": view, **{name: block for some in blocks for name, block in some.items()}}
-    defines = {"GI": int(gathered is not None), "LIGHT_CELLS": cells.kind}
+    maps = NO_MAPS if gathered is None else area_maps(gathered[1])
+    defines = {"GI": int(gathered is not None), "LIGHT_CELLS": cells.kind, "AREA_MAPS": maps}
 
     def key(layer: Layer) -> tuple[Raster, RasterState, int]:
         # Glass keeps hard shadows: with what is behind it the 16 textures that every driver has

@@ -1,7 +1,8 @@
 """Shadow maps of every light, drawn anew only where a view or what it sees changed.
 
 A directional light has one map of the whole scene, which lights voxels whatever the camera does,
-and cascades for what the camera sees; a spot light has one map, a point light six.
+and cascades for what the camera sees; a spot light has one map, a point light six, and an area
+light five or six from each of nine points.
 
 Where parts of the scene can move, what stands has maps of its own: a map that only moving things
 changed begins with a copy of these.
@@ -32,10 +33,12 @@ from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.scene_pack import MASKED, Array, Batch
 from elemental.passes.shadow_plan import ShadowPlan, ShadowPlanner, ShadowSettings
 from elemental.passes.shadow_tiles import Tile
+from elemental.scene.area_lights import AreaLight
 from elemental.scene.model import Camera, Light
 
 VERT, FRAG = "shadow/depth.vert.glsl", "shadow/depth.frag.glsl"
-DEPTH = Raster(VERT, FRAG)
+DEPTH = {cut: Raster(VERT, FRAG, defines={"CUT": int(cut)}) for cut in (False, True)}
+"""By whether what is behind an area light is left out."""
 STATE = RasterState(depth_test="lequal", polygon_offset=(0.0, 4.0))
 """Both faces cast: a single-sided wall shades too. The offset covers rounding; slopes are handled
 by the receiver's shift along its normal (glsl/lib/shadow.glsl)."""
@@ -229,9 +232,11 @@ def update_shadows(
     *,
     camera: Camera,
     size: tuple[int, int],
+    emitters: Sequence[AreaLight] = (),
 ) -> ShadowMaps:
-    """Bring every map up to date and return `maps`, ready to be read. size: px of the picture."""
-    plan = maps.planner.plan(lights, scene.bounds, camera, size)
+    """Bring every map up to date and return `maps`, ready to be read. size: px of the picture;
+    ``emitters``: area lights that get maps."""
+    plan = maps.planner.plan(lights, scene.bounds, camera, size, emitters)
     stale = maps.place(plan, scene)
     matrices = plan.views["clip_from_world"][stale].swapaxes(1, 2)
     scene.look([_viewer(number) for number in stale], matrices)
@@ -253,7 +258,8 @@ def _rectangle(tile: Tile) -> tuple[int, int, int, int]:
 def _draw_view(g: Graph, maps: ShadowMaps, scene: GpuScene, plan: ShadowPlan, number: int) -> None:
     tile, name = plan.tiles[number], f"shadow.{plan.names[number]}"
     still = maps.still_target(plan, number)
-    draw = partial(_draw_casters, g, scene, plan.blocks[number], _viewer(number), tile)
+    cut = number < plan.from_emitters
+    draw = partial(_draw_casters, g, scene, plan.blocks[number], _viewer(number), tile, cut)
     if still is None:
         draw(name, maps.target(plan, number), None)
         return
@@ -270,13 +276,14 @@ def _draw_casters(
     block: Block,
     viewer: str,
     tile: Tile,
+    cut: bool,
     name: str,
     target: Layer,
     dynamic: bool | None,
 ) -> None:
     """The depth of what can, or can't, move, into an empty map; what can move on top of the rest.
 
-    ``dynamic`` None: of everything. ``block``: ShadowPass.
+    ``dynamic`` None: of everything. ``block``: ShadowPass, with what is ``cut`` away.
     """
 
     def draw_opaque(enc: Encoder) -> None:
@@ -286,13 +293,14 @@ def _draw_casters(
     params = {"ShadowPass": block}
     place = _rectangle(tile)
     g.raster(
-        DEPTH, name, depth=target, reads=reads, params=params, state=STATE,
+        DEPTH[cut], name, depth=target, reads=reads, params=params, state=STATE,
         clear_depth=None if dynamic else 1.0, tile=place, draw=draw_opaque,
     )  # fmt: skip
     masked: dict[Raster, list[Batch]] = defaultdict(list)
     for batch in scene.batches(MASKED, dynamic):
         mask = _masked_textures(batch)
-        shader = material_shader(VERT, FRAG, batch, {"ALPHA_MASK": 1}, texture_mask=mask)
+        defines = {"ALPHA_MASK": 1, "CUT": int(cut)}
+        shader = material_shader(VERT, FRAG, batch, defines, texture_mask=mask)
         masked[shader].append(batch)
     for shader, batches in masked.items():
 

@@ -9,6 +9,7 @@ from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
+import numpy.typing as npt
 
 from elemental.core import transforms
 from elemental.passes.camera_view import box_corners
@@ -44,13 +45,27 @@ Bounds = tuple[FloatArray, FloatArray]
 
 
 @dataclass(frozen=True)
+class Cut:
+    """What casts no shadow: all at `heights` (lowest, highest) m over a plane (unit normal, offset)
+    and all in a ball (centre, radius)."""
+
+    plane: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0)
+    heights: tuple[float, float] = (1.0, 1.0)
+    ball: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0)
+
+
+SEES_ALL = Cut()
+
+
+@dataclass(frozen=True)
 class FittedView:
-    """One shadow view: clip_from_world (4, 4), the width of a texel at a clip w of 1, in m, and the
-    near and the far plane in m."""
+    """One shadow view: clip_from_world (4, 4), the width of a texel at a clip w of 1, in m, the
+    near and the far plane in m, and what it does not see."""
 
     clip_from_world: FloatArray
     texel: float
     depth_range: tuple[float, float]
+    cut: Cut = SEES_ALL
 
 
 @dataclass(frozen=True)
@@ -72,7 +87,7 @@ def scene_view(light: Light, bounds: Bounds, resolution: int) -> FittedView:
     corners = transforms.transform_points(view_from_world, box_corners(*bounds))
     low, high = corners.min(axis=0), corners.max(axis=0)
     center = (low + high) / 2
-    half = np.maximum((high - low)[:2].max() / 2, 1e-6) / _rim_scale(resolution)
+    half = np.maximum((high - low)[:2].max() / 2, 1e-6) / rim_scale(resolution)
     return _ortho(view_from_world, center[:2], float(half), corners[:, 2], resolution)
 
 
@@ -96,7 +111,7 @@ def cascade_views(
     for near, far in _splits(frustum.near, min(frustum.far, reach), count):
         center_ws, radius = _slice_sphere(frustum, near, far)
         radius = 2.0 ** (math.ceil(math.log2(radius) * STABLE_STEPS) / STABLE_STEPS)
-        half = radius / _rim_scale(resolution)
+        half = radius / rim_scale(resolution)
         texel = 2.0 * half / resolution
         center = transforms.transform_points(view_from_world, center_ws[None])[0, :2]
         snapped = np.floor(center / texel) * texel
@@ -112,19 +127,20 @@ def open_reach(bounds: Bounds, near: float) -> float:
 
 def spot_view(light: Light, bounds: Bounds, resolution: int) -> FittedView:
     """A spot light's view: its outer cone, widened by the rim."""
-    tangent = math.tan(min(light.outer_angle, math.radians(85.0))) / _rim_scale(resolution)
+    tangent = math.tan(min(light.outer_angle, math.radians(85.0))) / rim_scale(resolution)
     position = light.position.astype(np.float64)  # far away, a step of 1 m is none in 32 bits
     rotation = transforms.look_at(position, position + light.direction)
-    return _perspective(light, rotation, tangent, bounds, resolution)
+    return perspective_view(position, light.range, rotation, tangent, bounds, resolution)
 
 
 def point_views(light: Light, bounds: Bounds, resolution: int) -> list[FittedView]:
     """A point light's six views, each a right angle widened by the rim."""
-    tangent = 1.0 / _rim_scale(resolution)
+    tangent = 1.0 / rim_scale(resolution)
     position = light.position.astype(np.float64)
     return [
-        _perspective(
-            light,
+        perspective_view(
+            position,
+            light.range,
             transforms.look_at(position, position + np.array(direction), up),
             tangent,
             bounds,
@@ -134,7 +150,7 @@ def point_views(light: Light, bounds: Bounds, resolution: int) -> list[FittedVie
     ]
 
 
-def _rim_scale(resolution: int) -> float:
+def rim_scale(resolution: int) -> float:
     """Share of a map's width that is left inside the rim."""
     return 1.0 - 2.0 * RIM_TEXELS / resolution
 
@@ -167,15 +183,24 @@ def _ortho(
     return FittedView(clip_from_view @ view_from_world, 2.0 * half / resolution, depth_range)
 
 
-def _perspective(
-    light: Light, view_from_world: FloatArray, tangent: float, bounds: Bounds, resolution: int
+def perspective_view(
+    position: npt.NDArray[np.float64],
+    range_m: float,
+    view_from_world: FloatArray,
+    tangent: float,
+    bounds: Bounds,
+    resolution: int,
+    cut: Cut = SEES_ALL,
 ) -> FittedView:
+    """That of a square picture from a position (3,), as far as the scene or the range goes;
+    tangent: of half the angle that it spans."""
     corners = box_corners(*bounds)
-    farthest = float(np.linalg.norm(corners - light.position, axis=1).max())
-    far = max(min(light.range, farthest) * 1.001, 1e-6)
+    farthest = float(np.linalg.norm(corners - position, axis=1).max())
+    far = max(min(range_m, farthest) * 1.001, 1e-6)
     depth_range = NEAR_OVER_FAR * far, far
     clip_from_view = transforms.perspective(2.0 * math.atan(tangent), 1.0, *depth_range)
-    return FittedView(clip_from_view @ view_from_world, 2.0 * tangent / resolution, depth_range)
+    texel = 2.0 * tangent / resolution
+    return FittedView(clip_from_view @ view_from_world, texel, depth_range, cut)
 
 
 def _splits(near: float, far: float, count: int) -> Sequence[tuple[float, float]]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from elemental.core.layout import Block, layouts, pack, pack_array
+from elemental.core.layout import Block
 from elemental.passes import shadow_fit
 from elemental.passes.camera_view import clip_range
 from elemental.passes.light_pack import light_bounds, pack_lights, reach
@@ -17,6 +17,14 @@ from elemental.passes.scene_pack import Array
 from elemental.passes.shadow_budget import FACES, ShadowBudget, Shares
 from elemental.passes.shadow_fit import Bounds, FittedView, ViewFrustum
 from elemental.passes.shadow_tiles import Tile, TilePool
+from elemental.passes.shadow_views import (
+    FixedViews,
+    PlacedView,
+    pack_views,
+    shadow_pass,
+    views_of_emitters,
+)
+from elemental.scene.area_lights import AreaLight
 from elemental.scene.lights import same_objects
 from elemental.scene.model import Camera, Light
 
@@ -42,11 +50,12 @@ class ShadowSettings:
 
 @dataclass(frozen=True)
 class ShadowPlan:
-    """lights (L,) of the struct Light, never empty; views (V,) of the struct ShadowView, the
-    cascades behind those that do not depend on the camera; blocks ShadowPass, names and tiles by
-    view; `layers` that no camera exceeds; unshadowed: lights that the budget leaves without a map.
+    """lights (L,) of the struct Light, never empty; views (V,) of the struct ShadowView, those of
+    emitters first, the cascades last; blocks ShadowPass, names and tiles by view; `layers`
+    that no camera exceeds; unshadowed: lights that the budget leaves without a map.
     bounds (L, 4) of `light_bounds`; culled: whether they are worth it. shapes: of `shapes_of`.
-    key: differs when a light or a fixed view does."""
+    key: differs when a light or a fixed view does. from_emitters: the first so many views are of
+    area lights."""
 
     lights: Array
     bounds: Array
@@ -59,6 +68,7 @@ class ShadowPlan:
     unshadowed: int
     shapes: list[Shape]
     key: Hashable
+    from_emitters: int = 0
 
 
 @dataclass(frozen=True)
@@ -72,28 +82,6 @@ class PlacedLights:
     key: Hashable
 
 
-@dataclass(frozen=True)
-class PlacedView:
-    """A view by its name, in its tile."""
-
-    name: str
-    fitted: FittedView
-    tile: Tile
-
-
-@dataclass(frozen=True)
-class FixedViews:
-    """Views that no camera moves. first_view by light, -1 without one; packed (V,) of the struct
-    ShadowView; blocks ShadowPass, names and tiles by view. They hold while `key` does."""
-
-    key: Hashable
-    first_view: list[int]
-    packed: Array
-    blocks: list[Block]
-    names: list[str]
-    tiles: list[Tile]
-
-
 @dataclass
 class ShadowPlanner:
     """Plans frame after frame: keeps what does not change, and sizes and tiles where it can.
@@ -105,6 +93,7 @@ class ShadowPlanner:
     _budget: ShadowBudget = field(init=False)
     _pool: TilePool = field(init=False)
     _lights: list[Light] = field(default_factory=list)
+    _emitters: list[AreaLight] = field(default_factory=list)
     _reaches: list[float] = field(default_factory=list)
     _shapes: list[Shape] = field(default_factory=list)
     _spheres: Array = field(default_factory=lambda: light_bounds([], []))
@@ -124,10 +113,18 @@ class ShadowPlanner:
             self._lights = []
 
     def plan(
-        self, lights: Sequence[Light], bounds: Bounds, camera: Camera, size: tuple[int, int]
+        self,
+        lights: Sequence[Light],
+        bounds: Bounds,
+        camera: Camera,
+        size: tuple[int, int],
+        emitters: Sequence[AreaLight] = (),
     ) -> ShadowPlan:
-        """The views of the lights that get shadow maps. size: (width, height) px of the picture."""
-        self._take_over(lights)
+        """The views of the lights that get shadow maps, and of the area lights ``emitters``.
+
+        size: (width, height) px of the picture.
+        """
+        self._take_over(lights, emitters)
         frustum = _frustum(camera, size, bounds)
         shares = self._budget.share(lights, self._spheres, frustum)
         fixed = self._fixed_views(lights, shares, bounds)
@@ -138,14 +135,15 @@ class ShadowPlanner:
             lights=placed.structs,
             bounds=placed.bounds,
             culled=self._culled,
-            views=np.concatenate([fixed.packed, _pack_views(moved, self.settings.resolution)]),
-            blocks=fixed.blocks + [_block(view) for view in moved],
+            views=np.concatenate([fixed.packed, pack_views(moved, self.settings.resolution)]),
+            blocks=fixed.blocks + [shadow_pass(view) for view in moved],
             names=fixed.names + [view.name for view in moved],
             tiles=fixed.tiles + [view.tile for view in moved],
             layers=self._pool.layers,
             unshadowed=shares.unshadowed,
             shapes=self._shapes,
             key=placed.key,
+            from_emitters=fixed.from_emitters,
         )
 
     @property
@@ -153,8 +151,11 @@ class ShadowPlanner:
         local = sum(light.kind != "directional" for light in self._lights)
         return self.settings.culling and local >= CULLED_FROM
 
-    def _take_over(self, lights: Sequence[Light]) -> None:
+    def _take_over(self, lights: Sequence[Light], emitters: Sequence[AreaLight]) -> None:
         """Look at lights that are not those of the last frame."""
+        if not same_objects(emitters, self._emitters):
+            self._emitters = list(emitters)
+            self._fixed = None
         if same_objects(lights, self._lights):
             return
         self._lights = list(lights)
@@ -168,10 +169,12 @@ class ShadowPlanner:
         key = (tuple(shares.sides), bounds[0].tobytes(), bounds[1].tobytes())
         if self._fixed is not None and self._fixed.key == key:
             return self._fixed
-        if shares.layers > self._pool.layers:
-            self._pool = TilePool(shares.layers, self.settings.resolution)
-        tiles = self._pool.assign(self._sides(lights, shares.sides))
-        placed: list[PlacedView] = []
+        of_emitters = views_of_emitters(self._emitters, bounds, self.settings.resolution)
+        layers = shares.layers + of_emitters.layers
+        if layers > self._pool.layers:
+            self._pool = TilePool(layers, self.settings.resolution)
+        tiles = self._pool.assign(self._sides(lights, shares.sides) | of_emitters.sides)
+        placed = of_emitters.placed(tiles)
         first_view = []
         for number, (light, side) in enumerate(zip(lights, shares.sides, strict=True)):
             first_view.append(len(placed) if side else -1)
@@ -181,9 +184,10 @@ class ShadowPlanner:
         self._packed = None
         self._fixed = FixedViews(
             key,
+            len(of_emitters.names),
             first_view,
-            _pack_views(placed, self.settings.resolution),
-            [_block(view) for view in placed],
+            pack_views(placed, self.settings.resolution),
+            [shadow_pass(view) for view in placed],
             [view.name for view in placed],
             [view.tile for view in placed],
         )
@@ -284,26 +288,4 @@ def _frustum(camera: Camera, size: tuple[int, int], bounds: Bounds) -> ViewFrust
         far=far,
         tangent=tangent,
         corner_tangent=math.hypot(tangent, tangent * size[0] / size[1]),
-    )
-
-
-def _block(view: PlacedView) -> Block:
-    """The block ShadowPass of a view's draws."""
-    return pack(layouts().block("ShadowPass"), clip_from_world=view.fitted.clip_from_world)
-
-
-def _pack_views(placed: Sequence[PlacedView], resolution: int) -> Array:
-    """(V,) of the GLSL struct ShadowView."""
-    matrices = [view.fitted.clip_from_world for view in placed]
-    tiles = np.array([view.tile for view in placed], np.float32).reshape(-1, 4)
-    return pack_array(
-        layouts().struct("ShadowView"),
-        len(placed),
-        clip_from_world=np.array(matrices).reshape(-1, 4, 4),
-        texel=[view.fitted.texel for view in placed],
-        depth_range_m=np.array([view.fitted.depth_range for view in placed]).reshape(-1, 2),
-        depth_bias=[shadow_fit.DEPTH_BIAS] * len(placed),
-        layer=tiles[:, 0],
-        scale=tiles[:, 3] / resolution,
-        offset_uv=tiles[:, 1:3] / resolution,
     )

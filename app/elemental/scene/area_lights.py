@@ -40,7 +40,7 @@ class AreaLight:
 
     corner, edge_u, edge_v (3,) float32 m, world space: points are corner + s edge_u + t edge_v with
     s, t in 0..1, and cross(edge_u, edge_v) points to its front; of a ball the corner is the centre,
-    edge_u a radius, and edge_v nothing. radiance (3,) float32 nit; `instance` is the index of what
+    edge_u a radius, and edge_v unused. radiance (3,) float32 nit; `instance` is the index of what
     it belongs to in Scene.instances; `face` (3, 3) float64 are corner and edges in that instance's
     own space.
     """
@@ -51,17 +51,18 @@ class AreaLight:
     edge_v: FloatArray
     radiance: FloatArray
     both_sides: bool
+    is_ball: bool = False
     face: npt.NDArray[np.float64] = field(default_factory=lambda: np.eye(3), repr=False)
 
     @property
     def ball_radius(self) -> float:
         """m; 0 where it is a parallelogram."""
-        return 0.0 if self.edge_v.any() else float(np.linalg.norm(self.edge_u))
+        return float(np.linalg.norm(self.edge_u)) if self.is_ball else 0.0
 
     @property
     def flux(self) -> float:
         """Emitted by the front, summed over the three channels, W."""
-        if self.ball_radius > 0.0:
+        if self.is_ball:
             return float(4.0 * math.pi**2 * self.ball_radius**2 * self.radiance.sum())
         area = np.linalg.norm(np.cross(self.edge_u.astype(float), self.edge_v.astype(float)))
         return float(math.pi * area * self.radiance.sum())
@@ -73,18 +74,18 @@ def area_lights(scene: Scene) -> list[AreaLight]:
     Of an instance all faces or none; the strongest first, at most FACES_MAX.
     """
     faces_of = {
-        number: ball(mesh) if (faces := parallelograms(mesh)) is None else faces
+        number: found
         for number, mesh in enumerate(scene.meshes)
-        if _emits_evenly(scene, mesh)
+        if _emits_evenly(scene, mesh) and (found := _shape(mesh)) is not None
     }
     outside = _flux_from_outside(scene)
     lamps = []
     for number, instance in enumerate(scene.instances):
-        faces = faces_of.get(instance.mesh)
-        if faces is None or instance.skin >= 0 or instance.weights is not None:
+        if instance.mesh not in faces_of or instance.skin >= 0 or instance.weights is not None:
             continue
-        lamp = [_placed(scene, number, face, instance.world_from_local) for face in faces]
-        if lamp[0].ball_radius > 0.0 and not (
+        faces, is_ball = faces_of[instance.mesh]
+        lamp = [_placed(scene, number, face, is_ball, instance.world_from_local) for face in faces]
+        if is_ball and not (
             _keeps_round(instance.world_from_local) and _seen_from_outside(lamp[0], scene)
         ):
             continue
@@ -110,7 +111,7 @@ def followed(scene: Scene, lights: list[AreaLight], pose: Pose) -> list[AreaLigh
             moved.append(light)
         elif pose.visible[k]:
             world = pose.world_from_local[k]
-            moved.append(_placed(scene, light.instance, light.face, world))
+            moved.append(_placed(scene, light.instance, light.face, light.is_ball, world))
         else:
             moved.append(replace(light, radiance=np.zeros(3, np.float32)))
     return moved
@@ -159,6 +160,15 @@ def ball(mesh: Mesh) -> npt.NDArray[np.float64] | None:
     return np.array([[centre, (math.sqrt(area / (4.0 * math.pi)), 0.0, 0.0), np.zeros(3)]])
 
 
+def _shape(mesh: Mesh) -> tuple[npt.NDArray[np.float64], bool] | None:
+    """The mesh's parallelograms, or the ball that it is, (F, 3, 3) in its own space, and which."""
+    faces = parallelograms(mesh)
+    if faces is not None:
+        return faces, False
+    faces = ball(mesh)
+    return None if faces is None else (faces, True)
+
+
 def _keeps_round(world_from_local: FloatArray) -> bool:
     scales = np.linalg.svd(world_from_local[:3, :3].astype(np.float64), compute_uv=False)
     return bool(scales[0] - scales[2] <= ROUNDNESS * scales[0])
@@ -189,7 +199,11 @@ def _emits_evenly(scene: Scene, mesh: Mesh) -> bool:
 
 
 def _placed(
-    scene: Scene, number: int, face: npt.NDArray[np.float64], world_from_local: FloatArray
+    scene: Scene,
+    number: int,
+    face: npt.NDArray[np.float64],
+    is_ball: bool,
+    world_from_local: FloatArray,
 ) -> AreaLight:
     material = scene.materials[scene.meshes[scene.instances[number].mesh].material]
     matrix = world_from_local.astype(np.float64)
@@ -203,6 +217,7 @@ def _placed(
         edge_v=edges[1].astype(np.float32),
         radiance=material.emissive.astype(np.float32),
         both_sides=material.double_sided,
+        is_ball=is_ball,
         face=face,
     )
 

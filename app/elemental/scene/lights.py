@@ -92,7 +92,7 @@ class Light:
         return axis.astype(np.float32)
 
 
-def same_objects(some: Sequence[Light], others: Sequence[Light]) -> bool:
+def same_objects(some: Sequence[object], others: Sequence[object]) -> bool:
     """Whether they are the very same, in the same order: a light that changes is replaced."""
     return len(some) == len(others) and all(map(operator.is_, some, others))
 

@@ -19,8 +19,13 @@ TABLE = (
     ),
     Setting(
         "gi.area_lights", "bool", True,
-        "emissive faces and balls light by closed form, through aimed cones; off: as voxels",
+        "emissive faces and balls light by closed form, shadowed; off: as voxels",
         source="[Mittring12] [Heitz18]",
+    ),
+    Setting(
+        "gi.area_shadows", "choice", "cones",
+        "what shadows those: maps, of the strongest four that stand, cones for the others; cones",
+        choices=("maps", "cones"), source="[Mittring12] [Fernando05]",
     ),
     Setting(
         "gi.specular", "bool", True,

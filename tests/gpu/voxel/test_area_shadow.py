@@ -43,7 +43,7 @@ vec2 arrives(vec3 p, vec3 n) {
     for (int k = 0; k < AREA_STRATA; ++k) {
         AreaSample s = sample_area_lights(p, n, k);
         if (s.face < 0) continue;
-        sum += s.irradiance.x * vec2(area_visibility(p, n, s.face, s.point_ws, s.radius), 1.0);
+        sum += s.irradiance.x * vec2(area_visibility(p, n, s), 1.0);
     }
     return sum / float(AREA_STRATA);
 }

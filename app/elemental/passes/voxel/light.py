@@ -8,6 +8,7 @@ from elemental.core.layout import Block
 from elemental.gpu.graph import Graph
 from elemental.gpu.refs import AnyBuffer
 from elemental.gpu.shaders import Compute
+from elemental.passes.area_lights import ALL_MAPS, NO_MAPS, SOME_MAPS, area_maps
 from elemental.passes.light_cells import ALL_LIGHTS, NO_CELLS, WORLD_CELLS, LightCells
 from elemental.passes.voxel.build import level_params, state_offset
 from elemental.passes.voxel.octree import SIDED_BYTES_A_BRICK, Octree
@@ -24,10 +25,15 @@ GATHERS: dict[str, dict[str, int]] = {
 }
 """Whose radiance is gathered, that of this frame or of the last -> defines."""
 LIGHT = {
-    (gathered, cells): Compute("voxel/light.comp.glsl", {**defines, "LIGHT_CELLS": cells})
+    (gathered, cells, maps): Compute(
+        "voxel/light.comp.glsl", {**defines, "LIGHT_CELLS": cells, "AREA_MAPS": maps}
+    )
     for gathered, defines in GATHERS.items()
     for cells in (ALL_LIGHTS, WORLD_CELLS)
+    for maps in (NO_MAPS, SOME_MAPS, ALL_MAPS)
+    if defines or maps == NO_MAPS
 }
+"""By what is gathered, how lights are found, and which area lights have shadow maps."""
 
 
 def _reader(path: str, kind: str, one_leaf_level: bool, listed: bool = False) -> Compute:
@@ -88,8 +94,9 @@ def light_voxels(
         reads |= {**octree.tracing_reads(), **sky.reads()}
         params |= {"AreaLights": area_lights, **sky.params()}
     gathered = ("last" if of_last_frame else "present") if gather else "nothing"
+    maps = area_maps(area_lights) if gather else NO_MAPS
     g.compute(
-        LIGHT[gathered, cells.kind],
+        LIGHT[gathered, cells.kind, maps],
         "light voxels",
         reads=reads,
         writes={"Radiance": octree.radiance},

@@ -1,0 +1,104 @@
+"""Where the shadow maps of area lights look from. No GL here.
+
+Each of the strongest that stand has nine points: the middles of a parallelogram's 3x3 parts, or
+nine within a ball, spread as its disc is from wherever it is seen. Five faces of a cube that stands
+on the light see the half space before it, six all around.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from elemental.core import transforms
+from elemental.passes.shadow_fit import Bounds, Cut, FittedView, perspective_view, rim_scale
+from elemental.scene.area_lights import AreaLight
+
+EMITTERS_MAX = 4
+"""Most area lights with shadow maps: of 256 texels a side those take 45 to 54 MiB [inferred]."""
+POINTS = 9
+"""AREA_POINTS of glsl/shared/area_light.glsl."""
+SIDE_OF_MAPS = 4
+"""Of a side of the other lights' maps theirs are one part [measured: a half instead changes the
+energies of docs/accuracy.md by 1 % at most]."""
+BALL_SPREAD = 0.53
+"""Of a ball's radius: half the side of the cube whose corners are eight of its nine points. So they
+spread about its middle as its disc does, by R² / 4 along each axis."""
+LEAST_HEIGHT = 1e-3
+"""Of a light's size: what is so near its plane is the light itself, as in area_light.glsl."""
+BALL_MARGIN = 1.03
+"""Of a ball's radius: what is within is the ball itself, whose vertices reach beyond the ball of
+the same area."""
+
+CUBE = (
+    ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0)),
+    ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
+    ((-1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
+    ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+    ((0.0, -1.0, 0.0), (0.0, 0.0, 1.0)),
+    ((0.0, 0.0, -1.0), (0.0, 1.0, 0.0)),
+)
+"""(direction, up) of a point's views in its light's frame, as `emitter_view` of
+glsl/lib/area_map.glsl counts them; the last is for lights that shine backwards too."""
+
+
+def views_a_point(light: AreaLight) -> int:
+    """Views from each of its points."""
+    return len(CUBE) if light.both_sides or light.is_ball else len(CUBE) - 1
+
+
+def first_views(emitters: Sequence[AreaLight]) -> list[int]:
+    """The number of each one's first view, where theirs come before all others."""
+    counts = [POINTS * views_a_point(light) for light in emitters]
+    return [sum(counts[:number]) for number in range(len(counts))]
+
+
+def points(light: AreaLight) -> npt.NDArray[np.float64]:
+    """(9, 3) m, world space."""
+    corner, u, v = (x.astype(np.float64) for x in (light.corner, light.edge_u, light.edge_v))
+    if light.is_ball:
+        signs = np.array([[k & 1, k >> 1 & 1, k >> 2] for k in range(8)]) * 2.0 - 1.0
+        return np.concatenate([[corner], corner + BALL_SPREAD * light.ball_radius * signs])
+    middles = (np.arange(3) + 0.5) / 3.0
+    return np.array([corner + s * u + t * v for t in middles for s in middles])
+
+
+def emitter_views(light: AreaLight, bounds: Bounds, resolution: int) -> list[FittedView]:
+    """The views from its points, one point after the other."""
+    frame, cut = _frame(light), _cut(light)
+    tangent = 1.0 / rim_scale(resolution)
+    views = []
+    for point in points(light):
+        for direction, up in CUBE[: views_a_point(light)]:
+            towards, above = np.array(direction) @ frame, np.array(up) @ frame
+            rotation = transforms.look_at(point, point + towards, above)
+            views.append(
+                perspective_view(point, math.inf, rotation, tangent, bounds, resolution, cut)
+            )
+    return views
+
+
+def _frame(light: AreaLight) -> npt.NDArray[np.float64]:
+    """(3, 3): its axes by rows, along the first edge, across it, and forwards; a ball's are the
+    world's."""
+    if light.is_ball:
+        return np.eye(3)
+    u, v = light.edge_u.astype(np.float64), light.edge_v.astype(np.float64)
+    front = np.cross(u, v) / np.linalg.norm(np.cross(u, v))
+    along = u / np.linalg.norm(u)
+    return np.array([along, np.cross(front, along), front])
+
+
+def _cut(light: AreaLight) -> Cut:
+    """What casts no shadow: the light itself, and what is behind it."""
+    if light.is_ball:
+        ball = (*light.corner.tolist(), BALL_MARGIN * light.ball_radius)
+        return Cut(ball=ball)
+    front = _frame(light)[2]
+    size = math.sqrt(np.linalg.norm(np.cross(light.edge_u, light.edge_v)))
+    plane = (*front.tolist(), -float(front @ light.corner))
+    least = LEAST_HEIGHT * size
+    return Cut(plane=plane, heights=(-least if light.both_sides else -math.inf, least))
