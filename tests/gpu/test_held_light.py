@@ -12,7 +12,8 @@ import numpy.typing as npt
 import pytest
 
 from elemental.frame import Renderer
-from elemental.gpu.device import Device
+from elemental.gpu.device import Device, GpuMemoryError
+from elemental.passes.cone_trace.held import HeldLight
 from elemental.scene.model import Decal, Environment, Region
 from elemental.scene.volumes import Volume
 from elemental.settings import SETTINGS, Setting
@@ -50,12 +51,12 @@ class Viewer:
         return any(name.startswith("cones.") for name in self._passes())
 
     def check(self, what: str) -> Array:
-        """The picture, the same as if it were gathered now."""
+        """The picture, the same as if voxels were lit and cones traced now."""
         self.frame()  # takes over what changed; pools may grow with the frame after it
         self.frame()
         held = self.frame()
         assert not self.traces(), what
-        self.renderer.invalidate("view")
+        self.renderer.invalidate("light")
         traced = self.frame()
         assert self.traces(), what
         assert np.array_equal(held, traced), what
@@ -123,6 +124,10 @@ def test_nothing_that_changes_leaves_stale_light(viewer: Viewer, artist: Artist)
     def dim() -> None:
         renderer.set_lights([replace(light, intensity=0.5) for light in world.lights])
 
+    def carry() -> None:
+        moved = replace(world.lights[-1], position=vector(-0.5, 1.5, 1.0), node=-1)
+        renderer.set_lights([*world.lights[:-1], moved])
+
     def cloud() -> None:
         world.environment = Environment(None, vector(1.0, 0.2, 0.2), 1.0)
 
@@ -140,6 +145,7 @@ def test_nothing_that_changes_leaves_stale_light(viewer: Viewer, artist: Artist)
         ("a material", lambda: recolor(floor, vector(0.1, 0.9, 0.1, 1))),
         ("a decal's material", lambda: renderer.set_material(polish, material(roughness=0.8))),
         ("lights", dim),
+        ("a lamp elsewhere", carry),
         ("the sky", cloud),
         ("a volume", surround),
         (
@@ -158,6 +164,19 @@ def test_nothing_that_changes_leaves_stale_light(viewer: Viewer, artist: Artist)
         after = viewer.check(what)
         assert what == "its time" or not np.array_equal(before, after), what
         before = after
+
+
+def test_targets_that_do_not_fit_leave_nothing(
+    device: Device, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    held, before = HeldLight(device), device.bytes()
+    one = 8 * SIZE[0] * SIZE[1]
+    monkeypatch.setattr(device, "memory_budget", sum(before.values()) + one)
+    for _ in range(2):
+        with pytest.raises(GpuMemoryError, match="specular_gi"):
+            held.stands(device.begin_frame(), SIZE, "key")
+    held.release()
+    assert device.bytes() == before
 
 
 def test_a_reloaded_shader_gathers_anew(viewer: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:

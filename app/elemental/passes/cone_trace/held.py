@@ -22,6 +22,7 @@ class HeldLight:
 
     def __init__(self, device: Device) -> None:
         self._device = device
+        self._targets: list[Texture] = []
         self._size = (0, 0)
         self._key: Hashable = None
         self._gathered_by: Graph | None = None
@@ -36,10 +37,10 @@ class HeldLight:
             return True
         if self._size != size:
             self.release()
-            self.diffuse, self.specular = (
-                self._device.texture(name, size, RGBA16F, category="targets")
-                for name in ("diffuse_gi", "specular_gi")
-            )
+            for name in ("diffuse_gi", "specular_gi"):
+                made = self._device.texture(name, size, RGBA16F, category="targets")
+                self._targets.append(made)  # one by one: the other may not fit any more
+            self.diffuse, self.specular = self._targets
             self._size = size
         self._key, self._gathered_by = key, g
         return False
@@ -50,7 +51,6 @@ class HeldLight:
 
     def release(self) -> None:
         """Free the targets."""
-        if self._size != (0, 0):
-            self.diffuse.release()
-            self.specular.release()
+        while self._targets:
+            self._targets.pop().release()
         self._size, self._gathered_by = (0, 0), None
