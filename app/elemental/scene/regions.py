@@ -58,7 +58,10 @@ def with_regions(text: str, regions: Sequence[Region], path: Path) -> str:
     if wanted == known:
         return text
     # The first keeps more comments, and not every layout bears it.
-    edits = [partial(edit, before=known, after=wanted) for edit in (_merge, _replace)]
+    edits = (
+        partial(_merge, before=known, after=wanted),
+        partial(toml_edit.replace_tables, name="regions", contents=wanted),
+    )
     made = toml_edit.edited_as(text, edits, partial(_reads_as, wanted=wanted, path=path))
     if made is None:
         raise InputError(path, "regions", "can't be changed in this file's layout")
@@ -91,14 +94,6 @@ def _merge(doc: Any, before: Sequence[Any], after: Sequence[Any]) -> None:
         toml_edit.append_table(doc, "regions", table)
     if not after and "regions" in doc:
         del doc["regions"]
-
-
-def _replace(doc: Any, before: Sequence[Any], after: Sequence[Any]) -> None:
-    """All tables anew."""
-    if before:
-        del doc["regions"]
-    for table in after:
-        toml_edit.append_table(doc, "regions", table)
 
 
 def _update(table: Any, before: dict[str, Any], after: dict[str, Any]) -> None:

@@ -115,6 +115,14 @@ def append_table(document: Any, name: str, content: Mapping[str, Any]) -> None:
     tables.append(table)
 
 
+def replace_tables(document: Any, name: str, contents: Iterable[Mapping[str, Any]]) -> None:
+    """All ``[[name]]`` anew, at the file's end; none: none."""
+    if name in document:
+        del document[name]
+    for content in contents:
+        append_table(document, name, content)
+
+
 def plain(value: Any) -> Any:
     """A value as TOML has it: a tuple is a list, a whole float keeps its point."""
     return [plain(item) for item in value] if isinstance(value, tuple) else value

@@ -36,7 +36,14 @@ def with_volumes(text: str, volumes: Sequence[Volume], path: Path) -> str:
     if same_volumes(before, volumes):
         return text
     # The first keeps more comments, and not every layout bears it.
-    edits = [partial(edit, before=before, volumes=volumes) for edit in (_merge, _replace)]
+    edits = (
+        partial(_merge, before=before, volumes=volumes),
+        partial(
+            toml_edit.replace_tables,
+            name="volumes",
+            contents=[_table_of(volume) for volume in volumes],
+        ),
+    )
     made = toml_edit.edited_as(text, edits, partial(_reads_as, volumes=volumes, path=path))
     if made is None:
         raise InputError(path, "volumes", "can't be changed in this file's layout")
@@ -78,14 +85,6 @@ def _merge(doc: Any, before: Sequence[Volume], volumes: Sequence[Volume]) -> Non
         toml_edit.append_table(doc, "volumes", _table_of(volume))
     if not volumes and "volumes" in doc:
         del doc["volumes"]
-
-
-def _replace(doc: Any, before: Sequence[Volume], volumes: Sequence[Volume]) -> None:
-    """All tables anew."""
-    if "volumes" in doc:
-        del doc["volumes"]
-    for volume in volumes:
-        toml_edit.append_table(doc, "volumes", _table_of(volume))
 
 
 def _update(table: Any, before: Volume, volume: Volume) -> None:
