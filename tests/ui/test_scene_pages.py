@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from imgui_bundle import imgui
 
-from elemental.core.images import read_png_jpeg_webp
+from elemental.core.images import read_png_jpeg_webp, write_exr
 from elemental.scene.volumes import Volume, rotation_rows
 from elemental.ui.in_view import Lens, angles_of, outline, placed, placement
 from elemental.ui.panel.sequence import left_text
@@ -148,6 +148,7 @@ def test_a_material_is_changed_saved_and_undone(hands: Hands, scene_file: Path) 
 
 def test_a_light_is_changed_saved_and_undone(hands: Hands, scene_file: Path) -> None:
     robot = hands(scene_file, page="Lights", size=TALL)
+    assert not robot.sees("sky.sun")  # no sky, no switch
     before = robot.pixels()
     robot.enter_number("intensity", "2.5")
     assert robot.pixels().astype(int).sum() > before.astype(int).sum()
@@ -156,6 +157,20 @@ def test_a_light_is_changed_saved_and_undone(hands: Hands, scene_file: Path) -> 
     table = saved(robot, scene_file)["lights"][0]  # type: ignore[index]
     assert (table["intensity"], table["temperature"]) == (2.5, 6500.0)
     robot.desk.act("undo")
+    robot.desk.act("undo")
+    assert np.array_equal(robot.pixels(), before)
+
+
+def test_the_sun_of_the_sky_is_switched_off_and_on(hands: Hands, scene_file: Path) -> None:
+    radiance = np.full((64, 128, 3), 0.1, np.float32)
+    radiance[10, 30] = 2e3  # a texel: 56° high
+    write_exr(scene_file.with_name("sky.exr"), radiance)
+    scene_file.write_text(scene_file.read_text() + '[environment]\nfile = "sky.exr"\n')
+    robot = hands(scene_file, page="Lights", size=TALL)
+    before = robot.pixels()
+    robot.click("sky.sun")
+    assert robot.setting("sky.sun") is False
+    assert np.mean(robot.pixels() != before) > 0.05
     robot.desk.act("undo")
     assert np.array_equal(robot.pixels(), before)
 

@@ -84,7 +84,8 @@ def pages_of(desk: Desk) -> list[Page]:
         state.material = materials_page(w, state.material, desk.document, images)
 
     def lights(w: Widgets) -> None:
-        state.light = lights_page(w, state.light, desk.document, images_of(desk))
+        environment, images = desk.stage.scene.environment, images_of(desk)
+        state.light = lights_page(w, state.light, desk.document, environment, images)
 
     def regions(w: Widgets) -> None:
         observers.want("regions")

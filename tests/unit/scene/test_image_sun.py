@@ -14,7 +14,7 @@ import pytest
 from elemental.scene.image_sun import WIDEST_RIM, find_sun, with_sun
 from elemental.scene.lights import ImageSun
 from elemental.scene.model import Environment, Scene
-from elemental.scene.sky_sun import SkySun, note_sun
+from elemental.scene.sky_sun import SkySun, note_sun, told
 from elemental.settings import Settings
 
 Array = npt.NDArray[Any]
@@ -200,7 +200,9 @@ def test_one_line_tells_of_the_sun() -> None:
     scene = Scene("test", Path("a.toml"), environment=environment_with_sun())
     note_sun(scene, Settings())
     (note,) = scene.notes
-    assert note.startswith("a.toml: the environment's sun, 54° high towards (0.3")
-    assert "lux" in note
+    (light,) = SkySun().joined([], scene.environment, Settings())
+    assert told(light).startswith("54° high towards (0.3")
+    assert told(light).endswith(" lux")
+    assert note.startswith(f"a.toml: the environment's sun, {told(light)}, shines")
     note_sun(scene, Settings().replace({"sky.sun": False}, ""))
     assert len(scene.notes) == 1

@@ -1,17 +1,19 @@
-"""The scene's lights: strength, colour, place, reach."""
+"""The scene's lights: strength, colour, place, reach; and whether the sky's sun is one."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 from imgui_bundle import imgui
 
 from elemental.scene.blackbody import COOLEST, HOTTEST
-from elemental.scene.lights import Light
-from elemental.settings import Setting
+from elemental.scene.lights import Environment, Light
+from elemental.scene.sky_sun import SkySun, told
+from elemental.settings import SETTINGS, Setting
 from elemental.ui import icons
 from elemental.ui.document import Document
 from elemental.ui.panel.image_row import Images
@@ -26,8 +28,12 @@ BRIGHTEST = 1e5
 FARTHEST_M = 1000.0
 
 
-def lights_page(w: Widgets, chosen: int, document: Document, images: Images) -> int:
+def lights_page(
+    w: Widgets, chosen: int, document: Document, environment: Environment | None, images: Images
+) -> int:
     """Draw the page. Returns which light is chosen."""
+    if environment is not None and environment.sun is not None:
+        _sky_sun(w, document, environment)
     lights = document.state.lights
     if not lights:
         w.hint("The scene has no lights of its own: it is lit by emission or the sky.")
@@ -54,6 +60,17 @@ def lights_page(w: Widgets, chosen: int, document: Document, images: Images) -> 
             document.set_light(chosen, replace(light, **changed), gesture)
     imgui.end_child()
     return chosen
+
+
+def _sky_sun(w: Widgets, document: Document, environment: Environment) -> None:
+    """The switch of the sun in the environment's image, and what it gives."""
+    setting, settings = SETTINGS["sky.sun"], document.state.settings
+    value = settings[setting.key]
+    edit = property_row(w, setting.key, "Sun of the sky", setting, value, setting.default)
+    if edit is not None:
+        document.attempt(partial(document.set, setting.key, edit.value))
+    shining = SkySun().joined([], environment, settings)
+    w.hint(told(shining[0]) if shining else "It does not shine as a light of its own.")
 
 
 def fields_of(light: Light) -> tuple[Setting, ...]:
