@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 
 import hypothesis
@@ -12,6 +13,9 @@ from elemental.gpu.device import Device
 hypothesis.settings.register_profile("no deadline", deadline=None)
 """An example may take long on a machine that others use; pytest bounds the whole test."""
 hypothesis.settings.load_profile("no deadline")
+
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+"""Hundreds of processes start the program: they share what is compiled of it."""
 
 _devices: list[Device] = []
 

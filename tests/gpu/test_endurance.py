@@ -14,7 +14,7 @@ from elemental.gpu.recall import GENERATION
 from elemental.session import Stage, Viewpoint, set_stage
 from endurance.storm import LARGEST, Storm, resident_bytes
 
-STORM_FRAMES = 90
+STORM_FRAMES = 60
 ALLOWED_BYTES = 5_000_000
 """Growth over a storm that is drawn a second time."""
 WORDS = ("gi.resolution=64", "shadow.resolution=256")

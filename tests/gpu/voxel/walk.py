@@ -31,7 +31,7 @@ def world(bodies: int, seed: int = 1) -> Scene:
     """A floor, a wall and a pillar that stand; ``bodies`` that can move, some glowing, under
     a sun, a lamp and a spot."""
     rng = np.random.default_rng(seed)
-    shapes = (box((0.25, 0.2, 0.3)), sphere(0.16), quad(0.4), box((0.5, 0.03, 0.1)))
+    shapes = (box((0.25, 0.2, 0.3)), sphere(0.16, rings=6), quad(0.4), box((0.5, 0.03, 0.1)))
     moving = [part(shapes[i % 4], int(rng.integers(3)), at(0, 0, 0)) for i in range(bodies)]
     made = scene(
         part(quad(2.0), 0, at(0, -0.9, 0)),

@@ -260,7 +260,7 @@ def test_a_kill_in_the_middle_of_a_save_leaves_the_old_or_the_new_file(
         )
         assert saver.stdout is not None
         saver.stdout.readline()
-        time.sleep(chance.uniform(0.0, 0.5))
+        time.sleep(chance.uniform(0.0, 0.1))  # tens of saves
         saver.send_signal(signal.SIGKILL)
         saver.wait()
         saver.stdout.close()
