@@ -106,7 +106,7 @@ def test_a_bad_mask_is_told_and_changes_nothing(hands: Hands, scene_file: Path) 
     robot.enter_image(PLACE, "text.png")
     assert not robot.desk.document.steps
     assert robot.sees("problem mask")
-    said = robot.desk.log.entries[-1]
+    said = robot.desk.notices.log.entries[-1]
     assert said.kind == "error"
     assert "not a PNG, JPEG or WebP image" in said.text
     robot.click("reset mask")

@@ -104,14 +104,14 @@ def test_a_bad_file_is_told_and_changes_nothing(
     robot.enter_image(PLACE, name)
     assert not robot.desk.document.steps
     assert robot.sees(f"problem {ROW}")
-    said = robot.desk.log.entries[-1]
+    said = robot.desk.notices.log.entries[-1]
     assert said.kind == "error"
     assert str(scene_file.parent) in said.text
     assert reason in said.text
     monkeypatch.setattr(robot.desk.device, "largest_texture_px", 4)
     write_png(scene_file.parent / "wide.png", np.zeros((1, 8, 3), np.uint8))
     robot.enter_image(PLACE, "wide.png")
-    assert "is 8x1; this driver takes 4 pixels a side" in robot.desk.log.entries[-1].text
+    assert "is 8x1; this driver takes 4 pixels a side" in robot.desk.notices.log.entries[-1].text
     robot.click(f"reset {ROW}")
     assert not robot.sees(f"problem {ROW}")
 
@@ -126,7 +126,10 @@ def test_whatever_reading_raises_is_told(
     robot = hands(scene_file, page="Materials", size=SIZE)
     robot.enter_image(PLACE, "blue.png")
     assert robot.sees(f"problem {ROW}")
-    assert "blue.png: can't be read (can't start new thread)" in robot.desk.log.entries[-1].text
+    assert (
+        "blue.png: can't be read (can't start new thread)"
+        in robot.desk.notices.log.entries[-1].text
+    )
 
 
 def test_frames_go_on_while_a_file_is_read(

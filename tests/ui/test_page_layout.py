@@ -221,7 +221,7 @@ def test_one_headless_frame_has_times_messages_and_a_target(
     screen.finish()
     items = desk.workspace.widgets.items or {}
     assert desk.times.gpu.values
-    assert desk.log.count("error") >= 1
+    assert desk.notices.log.count("error") >= 1
     assert desk.observers.inspector.found
     assert "Buffers/picture" in items
     assert desk.observers.inspector.picture is not None

@@ -106,7 +106,7 @@ def test_a_region_outside_the_scene_is_told_once(hands: Hands, scene_file: Path)
     with scene_file.open("a") as file:
         file.write(far)
     robot = hands(scene_file, page="Regions", size=SIZE)
-    told = [entry for entry in robot.desk.log.entries if "regions[0]" in entry.text]
+    told = [entry for entry in robot.desk.notices.log.entries if "regions[0]" in entry.text]
     assert len(told) == 1
     assert "outside the scene" in told[0].text
     assert told[0].kind == "warning"

@@ -30,7 +30,7 @@ TALL = (1100, 900)
 def saved(robot: Robot, path: Path) -> dict[str, object]:
     """What the file says after saving."""
     robot.desk.act("save")
-    assert not robot.desk.document.unsaved, robot.desk.log.entries[-1]
+    assert not robot.desk.document.unsaved, robot.desk.notices.log.entries[-1]
     return tomllib.loads(path.read_text())
 
 
@@ -220,7 +220,7 @@ def test_a_sequence_is_rendered_stopped_and_gone_on_with(
     assert names == [f"{k:05d}.png" for k in range(12)]
     assert read_png_jpeg_webp(folder / "00011.png").shape == (18, 32, 4)
     assert desk.job.rendered == 12 - made
-    assert "12 frames" in desk.log.entries[-1].text
+    assert "12 frames" in desk.notices.log.entries[-1].text
 
 
 def test_a_screenshot_is_the_picture_without_the_panel(

@@ -66,7 +66,7 @@ def test_ticks_choices_texts_and_colours(hands: Hands, scene_file: Path) -> None
     robot.type("nowhere.exr")
     robot.frames(2)
     assert robot.setting("sky.image") == ""  # refused: there is no such file
-    assert "nowhere.exr" in robot.desk.log.entries[-1].text
+    assert "nowhere.exr" in robot.desk.notices.log.entries[-1].text
     assert robot.desk.document.steps == 3
 
 
@@ -206,7 +206,7 @@ def test_unsaved_edits_are_dropped_only_when_asked_twice(hands: Hands, scene_fil
     robot.desk.document.set("exposure", 2.0)
     robot.desk.act("reload")
     assert robot.setting("exposure") == 2.0
-    assert "unsaved" in robot.desk.message
+    assert "unsaved" in robot.desk.notices.message
     robot.desk.act("reload")
     assert robot.setting("exposure") == 0.25
     robot.desk.act("quit")

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from elemental.core.errors import InputError
 from elemental.frame.declare import declare_frame
 from elemental.frame.request import Request, Systems
+from elemental.frame.shadow_needs import SHADOW_KEYS, cutoff, shadow_settings
 from elemental.frame.views import LINEAR_VIEWS, OCTREE_VIEWS
 from elemental.gpu.device import Device
 from elemental.gpu.graph import Graph
@@ -26,7 +27,6 @@ from elemental.passes.post.history import PostHistory
 from elemental.passes.post.lens_flare import SpriteCounters
 from elemental.passes.scene_gpu import GpuScene
 from elemental.passes.shadow import ShadowMaps
-from elemental.passes.shadow_plan import ShadowSettings
 from elemental.passes.sky import Sky
 from elemental.passes.view_draws import CullCounters
 from elemental.passes.voxel import sizing
@@ -38,16 +38,13 @@ from elemental.scene.light_masks import MaskDrift
 from elemental.scene.lights import checked
 from elemental.scene.model import Camera, Light, Material, Region, Scene
 from elemental.scene.sky_sun import SkySun
-from elemental.scene.volumes import Volume, blend
+from elemental.scene.volumes import blend
 from elemental.settings import Settings
 
 MIB = 1 << 20
 
 OCTREE_KEYS = frozenset({"gi.resolution", "gi.memory_budget_mb", "gi.area_lights"})
-SHADOW_KEYS = frozenset(
-    f"shadow.{name}" for name in ("resolution", "cascades", "distance", "budget", "penumbras")
-) | {"lights.culling"}
-"""Settings that the octree and the shadow maps are made for."""
+"""Settings that the octree is made for."""
 
 
 @dataclass
@@ -94,7 +91,7 @@ class Renderer:
         self._post = PostHistory(device, settings, scene.folder)
         self._meshes = GpuScene(device, scene, self._area_lights.lights)
         self._decals = Decals(device, scene, self._meshes)
-        self._shadows = ShadowMaps(device, _shadow_settings(settings, scene.volumes))
+        self._shadows = ShadowMaps(device, shadow_settings(settings, scene.volumes))
         self._sky = Sky(device)
         self._voxels: VoxelLighting | None = None
         self._held = HeldLight(device)
@@ -135,7 +132,7 @@ class Renderer:
         if changed & SHADOW_KEYS:
             self._shadows.release()
             volumes = self.scene.volumes
-            self._shadows = ShadowMaps(self.device, _shadow_settings(settings, volumes))
+            self._shadows = ShadowMaps(self.device, shadow_settings(settings, volumes))
             self.invalidate("light")
         if changed & {"gi.area_lights", "gi.area_shadows"}:
             self._update_area_lights()
@@ -198,7 +195,7 @@ class Renderer:
         for what they were while they are the same objects: replace them, don't edit them.
         """
         lights = self._move(time_s, pose)
-        self._shadows.planner.set_cutoff(_cutoff(self.settings, self.scene.volumes))
+        self._shadows.planner.set_cutoff(cutoff(self.settings, self.scene.volumes))
         systems = self._systems(view, time_s)
         request = Request(
             camera=camera,
@@ -305,24 +302,3 @@ def max_pixels(device: Device) -> int:
 def _area_lights(settings: Settings) -> tuple[bool, bool]:
     """Whether there are area lights, and whether these get shadow maps."""
     return settings["gi.area_lights"], settings["gi.area_shadows"] == "maps"
-
-
-def _shadow_settings(settings: Settings, volumes: Sequence[Volume]) -> ShadowSettings:
-    return ShadowSettings(
-        resolution=settings["shadow.resolution"],
-        cascades=settings["shadow.cascades"],
-        reach=settings["shadow.distance"],
-        budget=settings["shadow.budget"],
-        penumbras=settings["shadow.penumbras"],
-        culling=settings["lights.culling"],
-        cutoff=_cutoff(settings, volumes),
-    )
-
-
-def _cutoff(settings: Settings, volumes: Sequence[Volume]) -> float:
-    """Irradiance, lux, at which lights without a range end: darker where the picture is developed
-    brighter. Of the brightest that any place sees, and in whole stops, since voxels are lit anew
-    for each change."""
-    exposures = [v.overrides["exposure"] for v in volumes if v.acts and "exposure" in v.overrides]
-    brightest = max([settings["exposure"], *exposures])
-    return float(settings["lights.cutoff"] / 2.0 ** math.ceil(brightest))

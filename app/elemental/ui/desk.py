@@ -25,8 +25,9 @@ from elemental.ui.fly_camera import FlyCamera
 from elemental.ui.gui import Gui
 from elemental.ui.images import ImageReader
 from elemental.ui.in_view import begin_gizmo, gizmo_has_mouse
-from elemental.ui.log import Kind, Log
+from elemental.ui.log import Kind
 from elemental.ui.measured import Measured
+from elemental.ui.notices import Notices
 from elemental.ui.observers import Observers
 from elemental.ui.pages import PageState, menu_of, overlays, pages_of
 from elemental.ui.panel.file_dialog import FileDialog
@@ -41,9 +42,6 @@ from elemental.ui.workspace import Workspace
 
 if TYPE_CHECKING:
     from elemental.remote.server import Remote
-
-MESSAGE_S = 4.0
-"""How long a message stays."""
 
 
 @dataclass(frozen=True)
@@ -87,8 +85,7 @@ class Desk:
         self.shows_help = self.shows_pixel = False
         self.frame: Frame | None = None
         self.problems: list[str] = []
-        self.log = Log()
-        self.started = time.perf_counter()
+        self.notices = Notices()
         self.pages = PageState()
         self.observers = Observers(device)
         self.images = ImageReader()
@@ -106,15 +103,12 @@ class Desk:
         """Time of Python and of the driver's calls for the frame; for the panel's widgets."""
         self._began: float | None = None
         """When the last frame was begun."""
-        self._message, self._message_until = "", 0.0
-        self.message_kind: Kind = "note"
-        self._sure_until = 0.0
         gui.scale = preferences.scale
         self.workspace = Workspace(Widgets(gui.fonts, records), pages_of(self), preferences.layout)
         self.workspace.hidden.update(preferences.hidden)
         self._is_shown = False
         """Whether the panel has been drawn: before, it settles unseen."""
-        self._log_scene()
+        self.notices.open(stage.scene)
 
     @property
     def preferences(self) -> Preferences:
@@ -142,11 +136,6 @@ class Desk:
     def wants_mouse(self) -> bool:
         """Whether the mouse is the panel's or the gizmo's, not the camera's."""
         return self.gui.wants_mouse or (not self.gui.rests and gizmo_has_mouse())
-
-    @property
-    def message(self) -> str:
-        """The line that shows for a while, empty if none does."""
-        return self._message if time.perf_counter() < self._message_until else ""
 
     def draw(self, size: tuple[int, int], seconds: float) -> None:
         """Render a frame and show it on ``size`` pixels, the panel around it.
@@ -228,7 +217,7 @@ class Desk:
     def _has_gui(self) -> bool:
         """Whether there is anything to draw over or around the picture."""
         shows = self.shows_panel or self.shows_hud or self.shows_help or self.shows_pixel
-        return bool(shows or self.message or self.dialog)
+        return bool(shows or self.notices.message or self.dialog)
 
     def _lay_out(self, size: tuple[int, int], seconds: float) -> Area:
         """Make the widgets. Returns the picture's area, from the bottom left corner."""
@@ -257,7 +246,7 @@ class Desk:
         """Take over edited shaders; what does not compile is told and its old program kept."""
         self.device.reload_changed_shaders()
         self.problems = self.renderer.problems()
-        self.log.follow(self.device.log.messages, self.problems, self._now())
+        self.notices.follow(self.device.log.messages, self.problems)
 
     def act(self, action: str, index: int = 0, shift: bool = False) -> None:
         """What a binding or a menu item does; ``index`` tells which of the binding's keys."""
@@ -287,26 +276,12 @@ class Desk:
 
     def may_lose_edits(self, how: str) -> bool:
         """Whether to go on with what drops the document: asked twice where that is unsaved."""
-        if not self.document.would_be_lost or time.perf_counter() < self._sure_until:
-            return True
-        self._sure_until = time.perf_counter() + MESSAGE_S
-        self.say(f"unsaved edits would be lost: Ctrl+S saves them, {how} again drops them")
-        return False
-
-    # What is said ------------------------------------------------------------------------------
+        question = f"unsaved edits would be lost: Ctrl+S saves them, {how} again drops them"
+        return not self.document.would_be_lost or self.notices.confirms(question)
 
     def say(self, message: str, kind: Kind = "note") -> None:
         """Show a line for a while, and log it."""
-        self._message, self._message_until = message, time.perf_counter() + MESSAGE_S
-        self.message_kind = kind
-        self.log.add(kind, message, self._now())
-
-    def _now(self) -> float:
-        return time.perf_counter() - self.started
-
-    def _log_scene(self) -> None:
-        self.log.add_all("warning", self.stage.scene.warnings, self._now())
-        self.log.add_all("note", self.stage.scene.notes, self._now())
+        self.notices.say(message, kind)
 
     # The scene ---------------------------------------------------------------------------------
 
@@ -335,7 +310,7 @@ class Desk:
         self.renderer.spreads_gathers = True
         self.extent = SceneExtent.of(stage.scene)
         self.fly = replace(self.fly, diagonal=self.extent.diagonal)
-        self._log_scene()
+        self.notices.open(stage.scene)
 
     def release(self) -> None:
         """Free the renderer and ImGui; the device is its maker's."""

@@ -115,7 +115,7 @@ def pages_of(desk: Desk) -> list[Page]:
         buffers_page(w, state.buffers, observers.inspector, observers.report, save)
 
     def log(w: Widgets) -> None:
-        log_page(w, desk.log, state.log)
+        log_page(w, desk.notices.log, state.log)
 
     return [
         Page("Scene", "left", scene),
@@ -178,8 +178,8 @@ def overlays(desk: Desk, place: Rect) -> None:
         draw_hud(figures_of(desk), place, desk.gui.fonts)
     if desk.shows_help:
         draw_keys()
-    if desk.message:
-        draw_message(desk.message, place, COLORS[desk.message_kind])
+    if desk.notices.message:
+        draw_message(desk.notices.message, place, COLORS[desk.notices.kind])
 
 
 def _volumes_in_view(desk: Desk, place: Rect) -> None:
