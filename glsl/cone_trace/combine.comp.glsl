@@ -54,7 +54,8 @@ void load_tile(ivec2 size) {
         if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) continue;
         float depth = texelFetch(u_depth, at, 0).r;
         if (depth >= DEPTH_CLEAR) continue;
-        tile_position[i] = vec4(position_ws_at((vec2(at) + 0.5) * u_view.viewport_px.zw, depth), 1.0);
+        vec2 uv = (vec2(at) + 0.5) * u_view.viewport_px.zw;
+        tile_position[i] = vec4(position_ws_at(uv, depth), 1.0);
         tile_normal[i] = normal10_decode(texelFetch(u_gbuffer_a, at, 0).xyz);
         ivec2 texel = sub_image_texel(at, size);
         tile_radiance[i] = texelFetch(u_radiance, texel, 0);
@@ -96,9 +97,10 @@ void main() {
         for (int y = first.y; y <= REACH; y += 3) {
             for (int x = first.x; x <= REACH; x += 3) {
                 int neighbour = own + y * TILE + x;
-                if (tile_position[neighbour].w == 0.0) continue;
-                float similarity = plane_similarity(tile_position[neighbour].xyz, p_ws, normal, inverse_tolerance)
-                                   * normal_similarity(tile_normal[neighbour], normal);
+                vec4 position = tile_position[neighbour];
+                if (position.w == 0.0) continue;
+                float similarity = plane_similarity(position.xyz, p_ws, normal, inverse_tolerance);
+                similarity *= normal_similarity(tile_normal[neighbour], normal);
                 float tent = float((3 - abs(x)) * (3 - abs(y)));
                 float weight = tent * max(similarity, LEAST_SIMILARITY);
 #if AREA_LIGHTS
@@ -120,8 +122,10 @@ void main() {
 #if AREA_LIGHTS
     vec4 broad = gathered;
     if (from_area.a > 0.0) {
-        gathered.rgb += from_area.rgb * (luminance(area_irradiance(p_ws, normal)) * INVERSE_PI / from_area.a);
-        float half_angle = specular_cone_half_angle(specular_power_decode(texelFetch(u_gbuffer_d, pixel, 0).r));
+        float diffuse = luminance(area_irradiance(p_ws, normal)) * INVERSE_PI;
+        gathered.rgb += from_area.rgb * (diffuse / from_area.a);
+        float power = specular_power_decode(texelFetch(u_gbuffer_d, pixel, 0).r);
+        float half_angle = specular_cone_half_angle(power);
         vec3 mirrored = reflect(normalize(p_ws - u_view.eye_ws), normal);
         float visible = luminance(from_area.rgb) / from_area.a;
         broad.rgb += visible * area_lobe_radiance(p_ws, normal, mirrored, half_angle);

@@ -33,7 +33,8 @@ void load_tile(ivec2 size, int cone) {
         if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, size))) continue;
         float depth = texelFetch(u_depth, pixel, 0).r;
         if (depth >= DEPTH_CLEAR) continue;
-        tile_position[i] = vec4(position_ws_at((vec2(pixel) + 0.5) * u_view.viewport_px.zw, depth), 1.0);
+        vec2 uv = (vec2(pixel) + 0.5) * u_view.viewport_px.zw;
+        tile_position[i] = vec4(position_ws_at(uv, depth), 1.0);
         tile_radiance[i] = texelFetch(u_parts, sub_image_texel(pixel, size), 0);
     }
 }
@@ -65,8 +66,8 @@ void main() {
                     int neighbour = centre_index + y * TILE + x;
                     vec4 position = tile_position[neighbour];
                     if (position.w == 0.0 || tile_radiance[neighbour].a < 0.0) continue;
-                    float similarity = plane_similarity(position.xyz, p_ws, normal, inverse_tolerance);
-                    similarity = max(similarity, LEAST_SIMILARITY);
+                    float plane = plane_similarity(position.xyz, p_ws, normal, inverse_tolerance);
+                    float similarity = max(plane, LEAST_SIMILARITY);
                     cone_sum += similarity * tile_radiance[neighbour];
                     cone_samples += similarity;
                 }
@@ -76,5 +77,6 @@ void main() {
             weights += weight;
         }
     }
-    imageStore(o_radiance, own.texel, weights > 0.0 ? sum / weights : vec4(0.0, 0.0, 0.0, REJECTED));
+    vec4 mean = weights > 0.0 ? sum / weights : vec4(0.0, 0.0, 0.0, REJECTED);
+    imageStore(o_radiance, own.texel, mean);
 }

@@ -25,7 +25,8 @@ void main() {
     uint kind = glossy_surface(pixel).kind;
     if (kind != GLOSSY_CONE) {
         bool broad = kind == GLOSSY_BROAD;
-        imageStore(o_specular_gi, pixel, broad ? texelFetch(u_broad_gi, pixel, 0) : vec4(0.0, 0.0, 0.0, 1.0));
+        vec4 light = broad ? texelFetch(u_broad_gi, pixel, 0) : vec4(0.0, 0.0, 0.0, 1.0);
+        imageStore(o_specular_gi, pixel, light);
         show_traced(pixel, SHOW_NONE);
         return;
     }

@@ -55,7 +55,8 @@ bool interpolate(ivec2 pixel, GlossySurface s, out vec4 light) {
     float n_o_v = clamp(dot(s.normal, normalize(u_view.eye_ws - s.p_ws)), 0.0, 1.0);
     float roughness = roughness_from_specular_power(s.power);
     vec3 shown = u_view.exposure * environment_brdf(s.specular_color, roughness, n_o_v);
-    return all(lessThanEqual(shown * (high - low), SPREAD_VISIBLE + SPREAD_SHARE * shown * light.rgb));
+    vec3 hidden = SPREAD_VISIBLE + SPREAD_SHARE * shown * light.rgb;
+    return all(lessThanEqual(shown * (high - low), hidden));
 }
 
 void main() {

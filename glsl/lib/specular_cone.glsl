@@ -29,11 +29,15 @@ vec4 specular_cone(vec3 p_ws, vec3 normal, float half_angle) {
     for (int i = 0; i < AREA_LIGHTS_MET && cone.a < CONE_OPAQUE; ++i) {
         AreaHit hit = hit_area_lights(origin, direction, half_angle, from, depth);
         if (hit.share == 0.0) break;
-        cone += (1.0 - cone.a) * cone_trace_between(origin, direction, half_angle, from, hit.distance_m - depth, clearance, NO_SURFACE);
+        float before = hit.distance_m - depth;
+        cone += (1.0 - cone.a) * cone_trace_between(origin, direction, half_angle, from, before,
+                                                    clearance, NO_SURFACE);
         cone += (1.0 - cone.a) * hit.share * vec4(hit.radiance, 1.0);
         from = hit.distance_m + depth;
     }
-    if (cone.a < CONE_OPAQUE) cone += (1.0 - cone.a) * cone_trace_above(origin, direction, half_angle, from, clearance);
+    if (cone.a < CONE_OPAQUE) {
+        cone += (1.0 - cone.a) * cone_trace_above(origin, direction, half_angle, from, clearance);
+    }
     float visible = 1.0 - cone.a;
     return vec4(cone.rgb + visible * sky_radiance(direction, half_angle), visible);
 }

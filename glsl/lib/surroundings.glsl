@@ -26,7 +26,8 @@ uint bits_of_cell(uint points, uvec3 cell, uint first_point) {
     uvec3 half_mask = first_point == 0u ? uvec3(0x55u, 0x33u, 0x0fu) : uvec3(0xaau, 0xccu, 0xf0u);
     uvec3 mask = half_mask | (whole * 0xffu);
     points &= mask.x & mask.y & mask.z;
-    uint spread = (points & 0x3u) | ((points & 0xcu) << 1) | ((points & 0x30u) << 5) | ((points & 0xc0u) << 6);
+    uint spread = (points & 0x03u) | ((points & 0x0cu) << 1)
+                | ((points & 0x30u) << 5) | ((points & 0xc0u) << 6);
     int at = int(2u * cell.x + 6u * cell.y + 18u * cell.z) - int(13u * first_point);
     return at < 0 ? spread >> uint(-at) : spread << uint(at);
 }
