@@ -120,6 +120,5 @@ class PostTextures:
         texture = self._device.texture(
             path.name, (width, height), SRGB8_A8, mips=levels, data=pixels
         )
-        texture.generate_mips()
         codes = pixels[..., :3].astype(np.float32) / np.float32(255.0)
         return Mask(texture, float(decode_srgb(codes).mean(dtype=np.float64)))
