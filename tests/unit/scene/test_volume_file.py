@@ -3,12 +3,7 @@
 
 from __future__ import annotations
 
-import os
-import random
-import signal
-import subprocess
-import sys
-import time
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,6 +12,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import shapes
+from cli.process import python
 from elemental.core.errors import InputError
 from elemental.scene.load import load_scene
 from elemental.scene.scene_file import parse_scene_file
@@ -26,7 +22,6 @@ from elemental.scene.volumes import Volume
 from gltf_builder import GltfBuilder
 from unit.scene.volume_values import volumes
 
-ROOT = Path(__file__).resolve().parents[3]
 PATH = Path("yard.toml")
 HEAD = '# the yard\n[[models]]\nfile = "model.glb"  # ours\n\n'
 TAIL = "\n[settings]\n# fast\ngi.resolution = 64  # voxels\n"
@@ -229,19 +224,27 @@ def test_a_link_is_followed_and_an_unwritable_place_is_told(tmp_path: Path) -> N
         save_volumes(tmp_path / "none.toml", [])
 
 
-SAVER = """
-import sys
+KILLS = 25
+KILLED_SAVERS = """
+import json, os, random, signal, sys, time
 from pathlib import Path
 from elemental.scene.save_scene import Changes, save_scene
 from elemental.scene.volume_save import save_volumes
 from elemental.scene.volumes import Volume
-file = Path(sys.argv[1])
+file, kills = Path(sys.argv[1]), int(sys.argv[3])
 whole = lambda path, volumes: save_scene(path, path, Changes(volumes=volumes))
 save = save_volumes if sys.argv[2] == "volumes" else whole
-print("saving", flush=True)
-while True:
-    for count in (1, 60):
-        save(file, [Volume(f"v{i}") for i in range(count)])
+chance = random.Random(5)
+for _ in range(kills):
+    saver = os.fork()
+    signal.alarm(20)  # of a saver that nobody kills
+    while saver == 0:
+        for count in (1, 60):
+            save(file, [Volume(f"v{i}") for i in range(count)])
+    time.sleep(chance.uniform(0.0, 0.1))
+    os.kill(saver, signal.SIGKILL)
+    os.waitpid(saver, 0)
+    print(json.dumps(file.read_text()))
 """
 
 
@@ -251,22 +254,12 @@ def test_a_kill_in_the_middle_of_a_save_leaves_the_old_or_the_new_file(
 ) -> None:
     file = tmp_path / "yard.toml"
     file.write_text(HEAD + TAIL)
-    chance, counts = random.Random(5), set()
-    for _ in range(6):
-        saver = subprocess.Popen(
-            [sys.executable, "-c", SAVER, str(file), what],
-            env={**os.environ, "PYTHONPATH": str(ROOT / "app")},
-            stdout=subprocess.PIPE,
-        )
-        assert saver.stdout is not None
-        saver.stdout.readline()
-        time.sleep(chance.uniform(0.0, 0.1))  # tens of saves
-        saver.send_signal(signal.SIGKILL)
-        saver.wait()
-        saver.stdout.close()
-        text = file.read_text()
+    result = python("-c", KILLED_SAVERS, file, what, KILLS)
+    texts = [json.loads(line) for line in result.stdout.splitlines()]
+    assert len(texts) == KILLS, result.stderr
+    for text in texts:
         assert text.startswith("# the yard")
         assert "gi.resolution = 64  # voxels" in text
-        counts.add(len(read(text)))
+    counts = {len(read(text)) for text in texts}
     assert counts <= {0, 1, 60}
     assert counts & {1, 60}
