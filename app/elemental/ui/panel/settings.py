@@ -78,8 +78,11 @@ def matches(setting: Setting, words: list[str]) -> bool:
     return all(word in text for word in words)
 
 
+LABELS = {key: label_of(setting) for key, setting in SETTINGS.items()}
+
+
 def _row(w: Widgets, document: Document, setting: Setting) -> None:
     value = document.state.settings[setting.key]
-    edit = property_row(w, setting.key, label_of(setting), setting, value, setting.default)
+    edit = property_row(w, setting.key, LABELS[setting.key], setting, value, setting.default)
     if edit is not None:
         document.attempt(partial(document.set, setting.key, edit.value, edit.gesture))
