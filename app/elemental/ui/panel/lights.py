@@ -71,6 +71,9 @@ def _sky_sun(w: Widgets, document: Document, environment: Environment) -> None:
         document.attempt(partial(document.set, setting.key, edit.value))
     shining = SkySun().joined([], environment, settings)
     w.hint(told(shining[0]) if shining else "It does not shine as a light of its own.")
+    imgui.spacing()
+    imgui.separator()
+    imgui.spacing()
 
 
 def fields_of(light: Light) -> tuple[Setting, ...]:
