@@ -95,14 +95,17 @@ const float NINTH_TEXELS = 0.75;
 const float ROUGH_TEXELS = 0.4;
 const float ROUGH_SHARE = 0.1;
 
-// A surface's plane from a point of a light, in the light's frame.
+// A surface's plane from a point of a light, in the light's frame, and the place on it that is lit.
 struct LitPlane {
     vec3 normal;
-    float height;  // of the plane over the point along its normal, negative
+    float height;      // of the plane over the point along its normal, negative
+    vec3 axis;         // unit, to the place
+    float distance_m;
 };
 
-// What four neighbouring texels of a map tell of the plane: distances there along the map's axis, of the plane
-// and of what is nearest to the light, and the weights of bilinear filtering.
+// What four neighbouring texels of a map tell: distances there along the map's axis, of the plane, or of what is
+// level with the place, beyond which nothing hides the light from it; of what is nearest to the light; and the
+// weights of bilinear filtering.
 struct Four {
     vec4 plane;
     vec4 nearest;
@@ -130,8 +133,10 @@ bool look_at_four(AreaLight light, int k, LitPlane lit, vec3 way, out Four four)
     vec4 v = vec4(high.y, high.y, low.y, low.y);
     four.weight = vec4(1.0 - far.x, far.x, far.x, 1.0 - far.x) * vec4(far.y, far.y, 1.0 - far.y, 1.0 - far.y);
     vec4 slope = normal.x * u + normal.y * v + normal.z;
+    vec3 axis = seen_through(side, lit.axis);
+    vec4 level = lit.distance_m / max(axis.x * u + axis.y * v + axis.z, vec4(1e-6));
     // What looks away from the plane, beyond its horizon, meets it nowhere.
-    four.plane = lit.height / min(slope, vec4(-1e-6));
+    four.plane = min(lit.height / min(slope, vec4(-1e-6)), level);
     vec2 place = shadow_views[view].offset_uv + corner / size;
     vec4 depth = textureGather(u_shadow_depths, vec3(place, shadow_views[view].layer));
     vec2 range_m = shadow_views[view].depth_range_m;
@@ -151,6 +156,8 @@ float disc_visibility(AreaLight light, int k, vec3 p_ws, vec3 normal, float radi
     if (view == NO_VIEW || lit.height >= 0.0) return 1.0;
     float distance_m = length(p);
     vec3 axis = p / distance_m;
+    lit.axis = axis;
+    lit.distance_m = distance_m;
     vec3 across = normalize(abs(axis.y) < 0.9 ? vec3(axis.z, 0.0, -axis.x) : vec3(0.0, axis.z, -axis.y));
     vec3 along = cross(axis, across);
     float cosine = -lit.height / distance_m;

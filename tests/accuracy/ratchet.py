@@ -34,6 +34,7 @@ SETTINGS = (
     "gi.diffuse_cones=36",
     "gi.diffuse_pattern=6",
     "gi.area_lights=true",
+    "gi.area_shadows=maps",
     "gi.specular=true",
     "gi.specular_adaptive=true",
     "ao.intensity=0",

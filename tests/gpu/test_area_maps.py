@@ -183,9 +183,19 @@ def test_a_lamp_at_a_ceiling_shadows_nothing_itself(seen: Seen) -> None:
     x = np.linspace(-1.9, 1.9, 60)
     floor = np.stack([x, 0 * x, 0.7 * x], axis=-1)
     np.testing.assert_allclose(seen(world, floor, UP), 1.0, atol=1e-3)
-    y = np.linspace(0.1, 2.9, 60)
+    y = np.linspace(0.03, 2.9, 60)
     wall = np.stack([np.full(60, 2.0), y, 0.5 * y - 1.0], axis=-1)
     np.testing.assert_allclose(seen(world, wall, -np.eye(3)[0]), 1.0, atol=1e-3)
+
+
+def test_light_that_grazes_leaves_no_acne(seen: Seen) -> None:
+    """Down to 5 degrees, straight and diagonally across the texels."""
+    lamp = part(quad(0.2), LAMP, at(0, 0.3, 0) @ DOWN)
+    world = scene(part(quad(8.0), 0, IDENTITY), lamp, materials=DARK)
+    x = np.linspace(0.1, 3.4, 400)
+    for across in (0.0, 0.37, 1.0):
+        p = np.stack([x, 0 * x, across * x], axis=-1)
+        np.testing.assert_allclose(seen(world, p, UP), 1.0, atol=1e-3)
 
 
 def test_a_double_sided_lamp_lights_both_ways(seen: Seen) -> None:

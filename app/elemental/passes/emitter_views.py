@@ -18,12 +18,15 @@ from elemental.passes.shadow_fit import Bounds, Cut, FittedView, perspective_vie
 from elemental.scene.area_lights import AreaLight
 
 EMITTERS_MAX = 4
-"""Most area lights with shadow maps: of 256 texels a side those take 45 to 54 MiB [inferred]."""
+"""Most area lights with shadow maps: of 256 texels a side those take 45 to 54 MiB. One of 54 views
+costs the atrium's first frame 0.4 s on the software driver [measured]."""
 POINTS = 9
 """AREA_POINTS of glsl/shared/area_light.glsl."""
 SIDE_OF_MAPS = 4
 """Of a side of the other lights' maps theirs are one part [measured: a half instead changes the
 energies of docs/accuracy.md by 1 % at most]."""
+MOST_TEXELS = 512
+"""Their longest side: a light's maps then take 45 to 54 MiB."""
 BALL_SPREAD = 0.53
 """Of a ball's radius: half the side of the cube whose corners are eight of its nine points. So they
 spread about its middle as its disc does, by R² / 4 along each axis."""
@@ -43,6 +46,11 @@ CUBE = (
 )
 """(direction, up) of a point's views in its light's frame, as `emitter_view` of
 glsl/lib/area_map.glsl counts them; the last is for lights that shine backwards too."""
+
+
+def side_of_maps(resolution: int) -> int:
+    """Texels, where the other lights' maps have so many."""
+    return min(resolution // SIDE_OF_MAPS, MOST_TEXELS)
 
 
 def views_a_point(light: AreaLight) -> int:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from elemental.core.layout import Block, layouts, pack, pack_array
-from elemental.passes.emitter_views import SIDE_OF_MAPS, emitter_views
+from elemental.passes.emitter_views import emitter_views, side_of_maps
 from elemental.passes.scene_pack import Array
 from elemental.passes.shadow_fit import DEPTH_BIAS, Bounds, FittedView
 from elemental.passes.shadow_tiles import Tile
@@ -41,16 +41,18 @@ class FixedViews:
 
 
 class EmitterViews(NamedTuple):
-    """Views of area lights, all of one `side` in texels. names and fitted by the tile's key."""
+    """Views of area lights, all of one `side` in texels, `in_layer` of them side by side in one.
+    names and fitted by the tile's key."""
 
     side: int
+    in_layer: int
     names: dict[Hashable, str]
     fitted: dict[Hashable, FittedView]
 
     @property
     def layers(self) -> int:
         """That hold their tiles and nothing else."""
-        return -(-len(self.names) // SIDE_OF_MAPS**2)
+        return -(-len(self.names) // self.in_layer)
 
     @property
     def sides(self) -> dict[Hashable, int]:
@@ -66,14 +68,14 @@ def views_of_emitters(
     emitters: Sequence[AreaLight], bounds: Bounds, resolution: int
 ) -> EmitterViews:
     """resolution: texels a side of the other lights' maps."""
-    side = resolution // SIDE_OF_MAPS
+    side = side_of_maps(resolution)
     names: dict[Hashable, str] = {}
     fitted: dict[Hashable, FittedView] = {}
     for number, emitter in enumerate(emitters):
         for k, view in enumerate(emitter_views(emitter, bounds, side)):
             key = ("emitter", number, k)
             names[key], fitted[key] = f"emitter.{number}.{k}", view
-    return EmitterViews(side, names, fitted)
+    return EmitterViews(side, (resolution // side) ** 2, names, fitted)
 
 
 def shadow_pass(view: PlacedView) -> Block:

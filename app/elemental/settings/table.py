@@ -23,7 +23,7 @@ TABLE = (
         source="[Mittring12] [Heitz18]",
     ),
     Setting(
-        "gi.area_shadows", "choice", "cones",
+        "gi.area_shadows", "choice", "maps",
         "what shadows those: maps, of the strongest four that stand, cones for the others; cones",
         choices=("maps", "cones"), source="[Mittring12] [Fernando05]",
     ),
