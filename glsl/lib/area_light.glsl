@@ -116,29 +116,33 @@ AreaLight part_of_face(AreaLight face, int part) {
     return face;
 }
 
-// A lone face is cut into 3x3. Of several, each gets as many of the parts as its share of the light,
-// at points of a lattice of rank one.
+// One of the 3x3 parts of a light's face by itself.
+AreaSample sample_part(int light, vec3 p_ws, vec3 normal, int stratum) {
+    AreaLight part = part_of_face(seen_from(u_area_lights.faces[light], p_ws), stratum);
+    AreaSample s;
+    s.face = light;
+    s.point_ws = part.corner_ws + 0.5 * (part.edge_u_ws + part.edge_v_ws);
+    s.radius = sqrt(part.area_m2 * INVERSE_PI);
+    s.part = stratum;
+    s.irradiance = part.radiance * (face_irradiance(part, p_ws, normal) * float(AREA_STRATA));
+    return s;
+}
+
+// Of the lights without shadow maps: a lone face is cut into 3x3. Of several, each gets as many of the parts as
+// its share of the light, at points of a lattice of rank one.
 AreaSample sample_area_lights(vec3 p_ws, vec3 normal, int stratum) {
     float from_face[AREA_LIGHTS_MAX];
     float total = 0.0;
     int strongest = 0;
     for (int i = 0; i < u_area_lights.count; ++i) {
         AreaLight face = seen_from(u_area_lights.faces[i], p_ws);
-        from_face[i] = luminance(face.radiance) * face_irradiance(face, p_ws, normal);
+        from_face[i] = face.shadow_view >= 0 ? 0.0 : luminance(face.radiance) * face_irradiance(face, p_ws, normal);
         total += from_face[i];
         if (from_face[i] > from_face[strongest]) strongest = i;
     }
     if (total <= 0.0) return AreaSample(-1, vec3(0.0), 0.0, 0, vec3(0.0));
+    if (from_face[strongest] > 0.999 * total) return sample_part(strongest, p_ws, normal, stratum);
     AreaSample s;
-    if (from_face[strongest] > 0.999 * total) {
-        AreaLight part = part_of_face(seen_from(u_area_lights.faces[strongest], p_ws), stratum);
-        s.face = strongest;
-        s.point_ws = part.corner_ws + 0.5 * (part.edge_u_ws + part.edge_v_ws);
-        s.radius = sqrt(part.area_m2 * INVERSE_PI);
-        s.part = stratum;
-        s.irradiance = part.radiance * (face_irradiance(part, p_ws, normal) * float(AREA_STRATA));
-        return s;
-    }
     float left = (float(stratum) + 0.5) / float(AREA_STRATA) * total;
     int chosen = 0;
     while (chosen < u_area_lights.count - 1 && left > from_face[chosen]) left -= from_face[chosen++];

@@ -35,7 +35,7 @@ SHARES = """
 vec2 shares(vec3 p, vec3 n) {
     vec2 sum = vec2(0.0);
     for (int k = 0; k < AREA_STRATA; ++k) {
-        AreaSample s = sample_area_lights(p, n, k);
+        AreaSample s = sample_part(0, p, n, k);
         float seen = disc_visibility(u_area_lights.faces[s.face], s.part, p, n, s.radius);
         sum += s.irradiance.x * vec2(seen, 1.0);
     }
@@ -264,6 +264,33 @@ def test_the_strongest_that_stand_get_maps(renderers: Any) -> None:
     renderer.set_settings(renderer.settings.replace({"gi.area_shadows": "cones"}))
     frame = renderer.render(EYE, 0.0, 1)
     assert frame.counters["shadow_maps"] == frame.counters["area_lights_without_maps"] == 0
+
+
+def test_of_a_body_s_faces_the_largest_get_maps() -> None:
+    lamp = part(box((0.1, 1.0, 0.7)), LAMP, IDENTITY)
+    block = AreaLightBlock(
+        scene(lamp, part(quad(9.0), 0, at(0, -3, 0)), materials=DARK), True, True
+    )
+    by_flux = sorted(light.flux for light in block.lights)
+    assert [light.flux for light in block.mapped] == by_flux[:1:-1]
+    assert by_flux[1] < by_flux[2]
+    mapped = block.block["faces"]["shadow_view"][:6] >= 0
+    assert [any(light is m for m in block.mapped) for light in block.lights] == mapped.tolist()
+
+
+def test_lamps_add_up(renderers: Any) -> None:
+    """Each is shadowed as if it were alone."""
+
+    def shown(*lamps: float) -> Array:
+        lit = (part(quad(0.5), LAMP, at(x, 2, 0) @ DOWN) for x in lamps)
+        pane = part(box((0.8, 0.1, 0.8)), 0, at(0, 0.8, 0))
+        white = [colored(0.7, 0.7, 0.7), glowing(9.0)]
+        world = scene(part(quad(6.0), 0, IDENTITY), pane, *lit, materials=white)
+        renderer = renderers(world, **{"gi.area_shadows": "maps", "gi.specular": False})
+        return renderer.read(renderer.render(EYE, 0.0, 0, "diffuse_gi"))[..., 0]
+
+    three, sum_of_three = shown(-1, 0.2, 1), sum(shown(x) for x in (-1, 0.2, 1))
+    np.testing.assert_allclose(three, sum_of_three, rtol=0.03, atol=0.01 * three.max())
 
 
 def test_what_moves_redraws_the_maps_that_see_it(device: Device, renderers: Any) -> None:

@@ -71,6 +71,7 @@ class AreaLightBlock:
         self.lights = area_lights(self._scene) if enabled else []
         instances = self._scene.instances
         stand = [n for n, light in enumerate(self.lights) if not instances[light.instance].dynamic]
+        stand.sort(key=lambda number: -self.lights[number].flux)
         mapped = stand[:EMITTERS_MAX] if maps else []
         self.mapped = [self.lights[number] for number in mapped]
         self.unmapped = len(stand) - len(mapped) if maps else 0
