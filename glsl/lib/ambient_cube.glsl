@@ -37,13 +37,20 @@ float opacity_along(vec3 cosines, vec3 opaque) {
     return min(sum, max(opaque.x, max(opaque.y, opaque.z)));
 }
 
-// What a ray along a unit direction sees of three sides: premultiplied radiance and opacity. Of a side,
-// a is what fronts of surfaces cover, rgb their radiance times that; opaque: opacities along the axes.
+// What a ray sees of voxels at a point, for a voxel of the way.
+struct Sight {
+    vec4 value;   // premultiplied radiance, opacity
+    float front;  // projected area of surfaces that face the ray less that of those that face away, at least 0
+};
+const Sight NO_SIGHT = Sight(vec4(0.0), 0.0);
+
+// What a ray along a unit direction sees of three sides. Of a side, a is what fronts of surfaces cover, rgb
+// their radiance times that; opaque: opacities along the axes, of which what no front covers is backs.
 //
 // Areas add by the cosines, as projected ones do: radiance is the mean over the fronts that the ray sees,
 // sides that are fuller counting more, since in those that a wall before it crosses edge-on stands what is
 // behind the wall as well. Backs are dark.
-vec4 mean_of_sides(vec4 x, vec4 y, vec4 z, vec3 opaque, vec3 direction, float own) {
+Sight mean_of_sides(vec4 x, vec4 y, vec4 z, vec3 opaque, vec3 direction, float own) {
     vec3 cosines = abs(direction);
     vec3 covers = vec3(x.a, y.a, z.a) + COVER_NOISE;
     vec3 areas = cosines * covers;
@@ -53,7 +60,8 @@ vec4 mean_of_sides(vec4 x, vec4 y, vec4 z, vec3 opaque, vec3 direction, float ow
     float opacity = opacity_along(cosines, opaque);
     float hides = hidden_share(cover, opacity, own);
     float whole = min((hides + FEW_CODES) / (cover + FEW_CODES), 1.0 / LEAST_COVER);
-    return vec4(radiance * cover * whole, hides);
+    float front = max(dot(cosines, 2.0 * vec3(x.a, y.a, z.a) - opaque), 0.0);
+    return Sight(vec4(radiance * cover * whole, hides), front);
 }
 
 // A short mean normal says that the voxel's surfaces face several ways.
@@ -74,4 +82,11 @@ float front_visibility(vec3 mean_normal, vec3 direction) {
     float squared_length = dot(mean_normal, mean_normal);
     float cosine = -dot(mean_normal, direction) * inversesqrt(max(squared_length, 1e-6));
     return mix(1.0, clamp(0.5 + FRONT_SLOPE * cosine, 0.0, 1.0), normal_certainty(squared_length));
+}
+
+// Area of a voxel with this mean normal that a ray along `direction` sees from the front, of its surface's.
+float front_area(vec3 mean_normal, vec3 direction) {
+    float squared_length = dot(mean_normal, mean_normal);
+    float cosine = -dot(mean_normal, direction) * inversesqrt(max(squared_length, 1e-6));
+    return mix(1.0, max(cosine, 0.0), normal_certainty(squared_length));
 }

@@ -21,39 +21,36 @@ int cone_steps = 0;  // samples taken by this invocation's cones
 // Cone widths a voxel: a trilinear lookup of a tent-filtered level already sees about two voxels.
 const float CONE_FOOTPRINT = 2.0;
 
-// What hides. Trilinear filtering spreads a one-voxel layer that covers the share A of the cone's width
-// into the profile A (1 - |x|): its integral over the way, in voxels, is A again, whatever the phase of
-// steps of half a voxel. What covers a part of the cone along a longer way, as a wall beside it does, has
-// a larger integral but hides no more. So the samples between two clear ones, a run, hide their integral,
-// or as much as the fullest of them says where that is less. [inferred: products of each step's
-// transparency hide all of a cone that a wall's edge covers by two thirds]
+// What hides. Samples between two clear ones, a run, are of one thing or of things close behind each other,
+// and say two things of the share of the cone that these cover. The fullest sample says it where the lattice
+// stands well, of a body or of bars that cover a part of the cone as of a wall that covers all of it; where the
+// lattice stands badly, it says two thirds of a wall. The run's sum of fronts says it of a sheet, however it
+// lies: projected areas add up to what covers the cone, trilinear filtering spreads a layer over the way but
+// keeps its sum, and what the cone only passes by, as a wall beside it, adds next to nothing. It says too much
+// of bodies behind each other, and nothing of backs. [inferred: products of each step's transparency hide all
+// of a cone that a wall's edge covers by two thirds. The numbers: docs/gi.md#what-hides]
 struct Run {
-    float integral;   // of opacity
-    float fullest;    // sample
+    float fullest;    // sample's opacity
+    float fronts;     // sum over the way, in voxels
     float hides;      // share of what arrived at the run
     float arrived;    // share of the cone
 };
-const float FULLEST = 0.65;       // of a layer's opacity that the fullest sample has at least
-const vec2 LAYERS = vec2(1.2, 1.8);  // voxels: a run's integral by its fullest sample, of one layer and of more
-const vec2 PARTLY = vec2(0.2, 0.55);   // opacities of the fullest sample: part of the cone, or maybe all of it
-// Coarse levels' layers are a little thicker than a voxel; the finest level's voxels stand in steps where
-// the lattice cuts a layer at an angle, and a narrow cone meets fewer of them than there are on average.
-const float COARSE_SHARE = 0.84;
-const float FINEST_SHARE = 1.3;
+const float FULLEST_OF_WALL = 0.74;    // opacity of the fullest sample of a wall, at least
+const float FRONTS_OF_WALL = 1.05;     // sum of fronts of a wall
+const float LEAST_OF_FULLEST = 0.645;  // a run hides this part of its fullest sample, whatever faces the cone
+const vec2 SURELY_WALL = vec2(0.635, 0.785);  // opacities of the fullest sample, from maybe a wall to surely one
+const float SURELY_HIDES = 0.6;        // more than the least
 
 // Nearly all or nearly nothing is all or nothing: sums over steps are off by some percent.
 float layer_opacity(float covered) { return covered * covered * (3.0 - 2.0 * covered); }
 
-// Adds a sample of the opacity a that stands for so many voxels of the way; returns the share of the
-// cone that it hides anew.
-float extend(inout Run run, float a, float voxels, float lod) {
-    run.integral += mix(FINEST_SHARE, COARSE_SHARE, min(lod, 1.0)) * a * voxels;
-    run.fullest = max(run.fullest, a);
-    // A profile as long as two voxels or more is of many things that cover a part each, or of a thick
-    // one: its fullest sample is their share.
-    float spread = smoothstep(LAYERS.x, LAYERS.y, run.integral / run.fullest);
-    float share = mix(FULLEST, 1.0, spread * (1.0 - smoothstep(PARTLY.x, PARTLY.y, run.fullest)));
-    float hides = layer_opacity(min(min(run.integral, run.fullest / share), 1.0));
+// Adds a sample that stands for so many voxels of the way; returns the share of the cone that it hides anew.
+float extend(inout Run run, Sight s, float voxels) {
+    run.fullest = max(run.fullest, s.value.a);
+    run.fronts += s.front * voxels;
+    float covers = min(run.fullest / FULLEST_OF_WALL, run.fronts / FRONTS_OF_WALL);
+    float least = LEAST_OF_FULLEST * run.fullest + SURELY_HIDES * smoothstep(SURELY_WALL.x, SURELY_WALL.y, run.fullest);
+    float hides = layer_opacity(min(max(covers, least), 1.0));
     float fresh = run.arrived * max(hides - run.hides, 0.0);
     run.hides = max(run.hides, hides);
     return fresh;
@@ -66,8 +63,10 @@ float exit_distance(vec3 p, vec3 inverse_direction, vec3 direction, vec3 cell, f
     return min(distances.x, min(distances.y, distances.z));
 }
 
+Sight scaled(Sight s, float by) { return Sight(s.value * by, s.front * by); }
+
 struct ConeSample {
-    vec4 value;       // premultiplied radiance, opacity
+    Sight sight;
     float empty_exit; // > 0: nothing up to there
     float leaf;       // finest voxels along one of a coarser region's leaves that was sampled, else 0
 };
@@ -87,23 +86,25 @@ ConeSample cone_sample(vec3 p, float lod, vec3 direction, vec3 inverse_direction
         uint empty_shift = is_empty ? uint(u_octree.leaf_level - int(node.child) + 1) : reached_shift;
         vec3 empty_cell = vec3(voxel >> empty_shift);
         float size = float(1u << empty_shift);
-        return ConeSample(vec4(0.0), exit_distance(p, inverse_direction, direction, empty_cell, size), 0.0);
+        return ConeSample(NO_SIGHT, exit_distance(p, inverse_direction, direction, empty_cell, size), 0.0);
     }
     vec3 local = p / float(1u << reached_shift) - vec3(voxel >> reached_shift);
     bool dense_child = coarse < u_octree.top_level;
     // A leaf of a coarser region stands for its finer levels too.
     bool is_leaf = reached < coarse || (!dense_child && node.child == 0u);
     float share = is_leaf ? 1.0 : lod - float(mip);  // of the coarse level
-    vec4 value = share > 0.0 ? share * sides_lookup(node, local, view) : vec4(0.0);
+    Sight sight = share > 0.0 ? scaled(sides_lookup(node, local, view), share) : NO_SIGHT;
     uvec3 child_cell = voxel >> (shift - 1u);
     float leaf = is_leaf ? 0.5 * float(1u << reached_shift) : 0.0;
-    if (is_leaf || (!dense_child && node.child == NODE_HOLLOW)) return ConeSample(value, 0.0, leaf);
+    if (is_leaf || (!dense_child && node.child == NODE_HOLLOW)) return ConeSample(sight, 0.0, leaf);
     Node child = nodes[dense_child ? dense_node(coarse + 1, child_cell) : child_node(node.child, child_cell)];
     if (node_has_brick(child)) {
         vec3 child_local = local * 2.0 - vec3(child_cell & 1u);
-        value += (1.0 - share) * node_lookup(child, coarse + 1, child_local, view);
+        Sight fine = scaled(node_lookup(child, coarse + 1, child_local, view), 1.0 - share);
+        sight.value += fine.value;
+        sight.front += fine.front;
     }
-    return ConeSample(value, 0.0, 0.0);
+    return ConeSample(sight, 0.0, 0.0);
 }
 
 // Height over the plane of a surface at which a cone ends: m at the start, and m a metre of the way.
@@ -157,7 +158,7 @@ vec4 cone_trace_between(vec3 Pos, vec3 Direction, float ConeAngle, float start_m
         float lod = min(log2(width), lod_last);
         ConeSample s = cone_sample(p, lod, guarded, inverse_direction, view);
         float sampled = max(width, s.leaf);
-        if (s.value.a < CONE_CLEAR) {
+        if (s.sight.value.a < CONE_CLEAR) {
             float clear_step = sampled * CONE_STEP_CLEAR;
             float way = s.empty_exit > 0.0 ? max(s.empty_exit + CONE_SKIP_EPSILON, width * CONE_STEP) : clear_step;
             gap = min(way - s.empty_exit, clear_step) / sampled;
@@ -165,8 +166,8 @@ vec4 cone_trace_between(vec3 Pos, vec3 Direction, float ConeAngle, float start_m
             run = Run(0.0, 0.0, 0.0, 1.0 - gathered.a);
             continue;
         }
-        float fresh = extend(run, s.value.a, 0.5 * (gap + CONE_STEP), s.leaf > 0.0 ? 1.0 : lod);
-        gathered += fresh * vec4(s.value.rgb / s.value.a, 1.0);
+        float fresh = extend(run, s.sight, 0.5 * (gap + CONE_STEP));
+        gathered += fresh * vec4(s.sight.value.rgb / s.sight.value.a, 1.0);
         gap = CONE_STEP;
         t += sampled * CONE_STEP;
         if (gathered.a > CONE_OPAQUE) {

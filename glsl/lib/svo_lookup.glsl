@@ -23,31 +23,33 @@ ViewOfVoxels view_of_voxels(vec3 direction) {
 
 // Four trilinear lookups, one for each side that the ray sees and one for the opacities.
 // local: 0..1 in the node. Premultiplied HDR radiance and opacity a voxel of the node's level.
-vec4 sides_lookup(Node node, vec3 local, ViewOfVoxels view) {
+Sight sides_lookup(Node node, vec3 local, ViewOfVoxels view) {
     vec3 at = (vec3(brick_texel(node_brick(node))) + 0.5 + 2.0 * local) * u_octree.atlas_texel;
     vec3 z = at.z + vec3(view.sides * BRICK_SIDE) * u_octree.atlas_texel.z;
-    vec4 value = mean_of_sides(
+    Sight sight = mean_of_sides(
         textureLod(u_brick_atlas, vec3(at.xy, z.x), 0.0), textureLod(u_brick_atlas, vec3(at.xy, z.y), 0.0),
         textureLod(u_brick_atlas, vec3(at.xy, z.z), 0.0),
         textureLod(u_brick_atlas, vec3(at.xy, at.z + float(BRICK_DIRECTIONS * BRICK_SIDE) * u_octree.atlas_texel.z), 0.0).rgb,
         view.direction, view.own);
-    return vec4(value.rgb * node_scale(node), value.a);
+    sight.value.rgb *= node_scale(node);
+    return sight;
 }
 
 // The finest level knows the normal, so that its front shows all of its radiance, its back none; where
 // a layer has fewer voxels an area, each hides that much more.
-vec4 leaf_lookup(Node node, vec3 local, ViewOfVoxels view) {
+Sight leaf_lookup(Node node, vec3 local, ViewOfVoxels view) {
     vec3 at = (vec3(leaf_texel(node.child - 1u)) + 0.5 + 2.0 * local) * u_octree.leaf_atlas_texel;
     vec4 value = textureLod(u_leaf_colors, at, 0.0);
-    if (value.a <= 0.0) return vec4(0.0);
+    if (value.a <= 0.0) return NO_SIGHT;
     vec3 normal = textureLod(u_leaf_normals, at, 0.0).xyz / value.a;
     float front = front_visibility(normal, view.direction);
-    float opacity = min(value.a / voxels_an_area(normal), 1.0);
+    float area = 1.0 / voxels_an_area(normal);
+    float opacity = min(value.a * area, 1.0);
     vec3 shown = value.rgb * (node_scale(node) * front * opacity / value.a);
-    return vec4(shown, hidden_share(front * opacity, opacity, view.own));
+    return Sight(vec4(shown, hidden_share(front * opacity, opacity, view.own)), value.a * area * front_area(normal, view.direction));
 }
 
-vec4 node_lookup(Node node, int level, vec3 local, ViewOfVoxels view) {
+Sight node_lookup(Node node, int level, vec3 local, ViewOfVoxels view) {
     if (level == u_octree.leaf_level) return leaf_lookup(node, local, view);
     return sides_lookup(node, local, view);
 }
@@ -59,5 +61,5 @@ vec4 SVOLookupLevel(vec3 Pos, int Mip, vec3 Direction) {
     NodeLocation at = octree_locate(Pos, level);
     Node node = nodes[at.node];
     if (!node_answers(node, at.level, level)) return vec4(0.0);
-    return node_lookup(node, at.level, at.local, view_of_voxels(Direction));
+    return node_lookup(node, at.level, at.local, view_of_voxels(Direction)).value;
 }

@@ -24,7 +24,7 @@ void main() {
         Node node = find_node(walk.point >> 1u, walk.level, reached);
         if (node_answers(node, reached, walk.level)) {
             vec3 local = vec3((walk.point >> uint(walk.level - reached)) & 1u) * 0.5;
-            vec4 value = node_lookup(node, reached, local, view);
+            vec4 value = node_lookup(node, reached, local, view).value;
             if (value.a >= WALK_OPAQUE) {
                 color = value.rgb / value.a;
                 break;
