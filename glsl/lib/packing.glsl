@@ -38,6 +38,11 @@ uint normal_snorm8_pack(vec3 n) {
 // The bit, of six, of the side of a surface that a line along an axis meets: +x -x +y -y +z -z.
 uint side_met(int axis, vec3 normal) { return 1u << (2 * axis + int(normal[axis] < 0.0)); }
 
+// Height of a surface over the lattice point of its voxel along its normal, within half a finest voxel: two
+// bits, to an eighth.
+uint surface_height_code(float voxels) { return uint(clamp(floor((voxels + 0.5) * 4.0), 0.0, 3.0)); }
+float surface_height_voxels(uint code) { return (float(code) + 0.5) / 4.0 - 0.5; }
+
 vec3 normal_snorm8_unpack(uint code) {
     vec3 n = unpackSnorm4x8(code & 0x00ffffffu).xyz;
     float squared = dot(n, n);

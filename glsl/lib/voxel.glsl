@@ -25,7 +25,7 @@ uvec2 pack_half4(vec4 v) { return uvec2(packHalf2x16(v.xy), packHalf2x16(v.zw));
 float leaf_opacity(uint voxel) { return unpackUnorm4x8(attributes[voxel].albedo).a; }
 
 // Bits of the sides that lattice lines meet: +x -x +y -y +z -z.
-uint leaf_sides_met(uint voxel) { return attributes[voxel].normal >> SIDES_MET_SHIFT; }
+uint leaf_sides_met(uint voxel) { return attributes[voxel].normal >> SIDES_MET_SHIFT & SIDES_MET_MASK; }
 
 vec3 leaf_opacities(uint voxel) {
     uint met = leaf_sides_met(voxel);

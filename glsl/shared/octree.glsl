@@ -35,8 +35,8 @@ struct Node {
 
 // One rasterized sample of a surface. position: 10:10:10 coordinates on the finest lattice from the
 // scene's corner, and 2 bits: the share of decals that it takes; albedo: RGBA8, a = opacity;
-// normal: snorm8 xyz, high byte: the bit of the side that its lattice line meets; emissive: RGB9E5
-// radiance.
+// normal: snorm8 xyz, high byte: the bit of the side that its lattice line meets and the surface's height
+// over the lattice point along the normal, see surface_height_code; emissive: RGB9E5 radiance.
 struct VoxelFragment {
     uint position;
     uint albedo;
@@ -46,14 +46,16 @@ struct VoxelFragment {
 
 // Averages over a voxel's fragments, 12 bytes: GI-03's "material attributes, normal".
 // normal: snorm8 xyz, whose length tells how much the fragments agree; high byte: a bit for each side,
-// +x -x +y -y +z -z, that a lattice line meets here. Over many leaves of a surface their number is its
-// projected area along the axis, whatever its normal and however thin it is.
+// +x -x +y -y +z -z, that a lattice line meets here, and the mean height. Over many leaves of a surface the
+// number of sides is its projected area along the axis, whatever its normal and however thin it is.
 struct VoxelAttributes {
     uint albedo;
     uint normal;
     uint emissive;
 };
 const uint SIDES_MET_SHIFT = 24u;
+const uint SIDES_MET_MASK = 0x3fu;
+const uint HEIGHT_SHIFT = 30u;
 
 // Where a brick belongs. cell: 9:9:9 node coordinates, 4 bits of level, top bit: a leaf.
 // node: 24 bits of node index, 8 bits that say which of its own 2x2x2 points hold anything.

@@ -24,8 +24,9 @@ layout(std430) readonly buffer Bricks { Brick bricks[]; };
 layout(std430) readonly buffer Attributes { VoxelAttributes attributes[]; };
 layout(std430) writeonly buffer Radiance { uint radiance[]; };  // RGB9E5
 
-// A voxel's point lies up to sqrt(3)/2 voxels from its surface; this clears it.
-const float SHADOW_OFFSET_VOXELS = 1.0;
+// From the surface of a voxel to where its shadow is looked up: what the height's code may be off and a
+// little more. More lets light in under eaves and at the foot of walls.
+const float SHADOW_OFFSET_VOXELS = 0.2;
 // Mean of the clamped cosine over all directions, for voxels without a normal of their own.
 const float MEAN_COSINE = 0.25;
 
@@ -33,13 +34,18 @@ const float MEAN_COSINE = 0.25;
 // the mean over the voxel, not the value at its lattice point.
 const float NEAREST_LIGHT_VOXELS = 0.5;
 
-vec3 direct_irradiance(vec3 p_ws, vec3 normal, float certainty, float spacing) {
+// shadow_offset_m: from p_ws along the normal.
+vec3 direct_irradiance(vec3 p_ws, vec3 mean_normal, float spacing, float shadow_offset_m) {
+    float squared = dot(mean_normal, mean_normal);
+    vec3 normal = mean_normal * inversesqrt(max(squared, 1e-6));
+    float certainty = normal_certainty(squared);
     vec3 sum = vec3(0.0);
     for (LightWalk walk = first_light(p_ws); walk.light < light_count(); next_light(walk)) {
         LightSample light = sample_light(lights[walk.light], p_ws, spacing);
-        float cosine = mix(MEAN_COSINE, max(dot(normal, light.to_light), 0.0), certainty);
+        // Of the mean normal as it is: its length makes it the mean cosine of a voxel's surfaces.
+        float cosine = mix(MEAN_COSINE, max(dot(mean_normal, light.to_light), 0.0), certainty);
         if (cosine * max(light.irradiance.r, max(light.irradiance.g, light.irradiance.b)) <= 0.0) continue;
-        float visibility = light_visibility(walk.light, p_ws, normal, spacing * SHADOW_OFFSET_VOXELS);
+        float visibility = light_visibility(walk.light, p_ws, normal, shadow_offset_m);
         float nearness = lights[walk.light].kind == LIGHT_DIRECTIONAL
                              ? 1.0 : min(light.distance_m / (NEAREST_LIGHT_VOXELS * spacing), 1.0);
         sum += light.irradiance * (cosine * visibility * nearness * nearness);
@@ -61,11 +67,12 @@ void main() {
     vec3 p_ws = u_octree.origin_size.xyz + vec3(point) * spacing;
 
     vec3 mean_normal = unpackSnorm4x8(voxel.normal).xyz;
-    float squared = dot(mean_normal, mean_normal);
-    vec3 normal = mean_normal * inversesqrt(max(squared, 1e-6));
-    float certainty = normal_certainty(squared);
+    vec3 normal = mean_normal * inversesqrt(max(dot(mean_normal, mean_normal), 1e-6));
     vec4 albedo = unpackUnorm4x8(voxel.albedo);
-    vec3 incident = direct_irradiance(p_ws, normal, certainty, spacing) * INVERSE_PI;
+    // Leaves of coarser regions know no height: their surfaces lie within half of their voxels.
+    float height = level == u_octree.leaf_level ? surface_height_voxels(voxel.normal >> HEIGHT_SHIFT) : 0.5;
+    float shadow_offset_m = spacing * (height + SHADOW_OFFSET_VOXELS);
+    vec3 incident = direct_irradiance(p_ws, mean_normal, spacing, shadow_offset_m) * INVERSE_PI;
 #if SPREAD
     // Bricks that got other slots hold nothing yet to gather.
     if (octree_state.fresh == 0u)

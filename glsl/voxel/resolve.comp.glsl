@@ -23,6 +23,7 @@ struct Sums {
     uint emitting;
     uvec4 albedo;
     ivec3 normal;
+    uint height_codes;
     uint sides_met;
     uint sides_emitting;
     uvec3 emitted;
@@ -33,13 +34,15 @@ uint add_fragment(inout Sums sums, uint index) {
     VoxelFragment fragment = fragments[index];
     ++sums.count;
     sums.albedo += bytes_of(fragment.albedo);
-    sums.sides_met |= fragment.normal >> SIDES_MET_SHIFT;
+    sums.height_codes += fragment.normal >> HEIGHT_SHIFT;
+    uint side = fragment.normal >> SIDES_MET_SHIFT & SIDES_MET_MASK;
+    sums.sides_met |= side;
     sums.normal += ivec3(round(normal_snorm8_unpack(fragment.normal) * 127.0));
     uvec3 radiance = uvec3(rgb9e5_unpack(fragment.emissive) * u_octree.fixed_point + 0.5);
     sums.emitted += radiance;
     if (radiance != uvec3(0u)) {
         ++sums.emitting;
-        sums.sides_emitting |= fragment.normal >> SIDES_MET_SHIFT;
+        sums.sides_emitting |= side;
     }
 #if KEPT_FRAGMENTS
     return links[index];
@@ -52,7 +55,7 @@ void main() {
     uint item = linear_thread_id();
     if (item >= octree_state.leaf_voxels.threads) return;
     uint voxel = leaf_voxel_of_item(item);
-    Sums sums = Sums(0u, 0u, uvec4(0u), ivec3(0), 0u, 0u, uvec3(0u));
+    Sums sums = Sums(0u, 0u, uvec4(0u), ivec3(0), 0u, 0u, 0u, uvec3(0u));
 #if KEPT_FRAGMENTS
     uint moving = head_of_voxel(voxel, MOVING_FRAGMENTS);
     for (uint link = heads[head_of_voxel(voxel, STILL_FRAGMENTS)]; link != 0u;) link = add_fragment(sums, link - 1u);
@@ -67,7 +70,8 @@ void main() {
     VoxelAttributes result;
     result.albedo = packUnorm4x8(vec4(sums.albedo) * (inverse / 255.0));
     result.normal = packSnorm4x8(vec4(vec3(sums.normal) * (inverse / 127.0), 0.0)) & 0x00ffffffu;
-    result.normal |= sums.sides_met << SIDES_MET_SHIFT;
+    uint height_code = (2u * sums.height_codes + sums.count) / (2u * sums.count);
+    result.normal |= sums.sides_met << SIDES_MET_SHIFT | height_code << HEIGHT_SHIFT;
     // Emission is averaged over what emits: a lamp keeps its power where the ceiling that it hangs
     // from shares its voxels. A leaf shows one radiance on all sides: those that only other surfaces
     // cover must not add to the power.

@@ -48,7 +48,9 @@ void main() {
     // What a surface mirrors goes on as if it were diffuse: the right power, in all directions.
     vec3 albedo = surface.albedo + mirrored_share(surface.specular_color, surface.roughness);
     fragment.albedo = packUnorm4x8(vec4(albedo, opacity));
-    fragment.normal = normal_snorm8_pack(normal_ws) | side_met(u_voxelize.axis, normal_ws) << SIDES_MET_SHIFT;
+    float height = (v_point[u_voxelize.axis] - nearest[u_voxelize.axis]) * normal_ws[u_voxelize.axis];
+    fragment.normal = normal_snorm8_pack(normal_ws) | side_met(u_voxelize.axis, normal_ws) << SIDES_MET_SHIFT
+                      | surface_height_code(height) << HEIGHT_SHIFT;
     vec3 emissive = min(surface.emissive, materials[v_material].emission_max);
     // The voxels leave out what area lights emit.
     bool area_light = (v_flags & INSTANCE_AREA_LIGHT) != 0u;

@@ -171,13 +171,14 @@ def sides_met(stage: Stage) -> Array:
     """(S, 8) uint32 bits of the sides that lattice lines meet in each leaf, by slot and voxel."""
     words = stage.octree.attributes.read(layouts().struct("VoxelAttributes"))
     words = words[: stage.counts.leaves * 8]
-    return np.asarray(words["normal"] >> constant("SIDES_MET_SHIFT")).reshape(-1, 8)
+    sides = words["normal"] >> constant("SIDES_MET_SHIFT") & constant("SIDES_MET_MASK")
+    return np.asarray(sides).reshape(-1, 8)
 
 
 def united_sides(fragments: Array, slots: Array, shape: tuple[int, ...]) -> Array:
     """The same from the queue: ``slots`` (F,) says the voxel of each fragment, in ``shape``."""
     met = np.zeros(int(np.prod(shape)), np.uint32)
-    np.bitwise_or.at(met, slots, fragments["normal"] >> constant("SIDES_MET_SHIFT"))
+    np.bitwise_or.at(met, slots, fragments["normal"] >> constant("SIDES_MET_SHIFT") & constant("SIDES_MET_MASK"))
     return met.reshape(shape)
 
 
