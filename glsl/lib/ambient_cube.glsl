@@ -41,8 +41,9 @@ float opacity_along(vec3 cosines, vec3 opaque) {
 struct Sight {
     vec4 value;   // premultiplied radiance, opacity
     float front;  // projected area of surfaces that face the ray less that of those that face away, at least 0
+    float axis;   // opacity along the axis along which it is the greatest
 };
-const Sight NO_SIGHT = Sight(vec4(0.0), 0.0);
+const Sight NO_SIGHT = Sight(vec4(0.0), 0.0, 0.0);
 
 // What a ray along a unit direction sees of three sides. Of a side, a is what fronts of surfaces cover, rgb
 // their radiance times that; opaque: opacities along the axes, of which what no front covers is backs.
@@ -61,7 +62,7 @@ Sight mean_of_sides(vec4 x, vec4 y, vec4 z, vec3 opaque, vec3 direction, float o
     float hides = hidden_share(cover, opacity, own);
     float whole = min((hides + FEW_CODES) / (cover + FEW_CODES), 1.0 / LEAST_COVER);
     float front = max(dot(cosines, 2.0 * vec3(x.a, y.a, z.a) - opaque), 0.0);
-    return Sight(vec4(radiance * cover * whole, hides), front);
+    return Sight(vec4(radiance * cover * whole, hides), front, max(opaque.x, max(opaque.y, opaque.z)));
 }
 
 // A short mean normal says that the voxel's surfaces face several ways.

@@ -21,36 +21,48 @@ int cone_steps = 0;  // samples taken by this invocation's cones
 // Cone widths a voxel: a trilinear lookup of a tent-filtered level already sees about two voxels.
 const float CONE_FOOTPRINT = 2.0;
 
-// What hides. Samples between two clear ones, a run, are of one thing or of things close behind each other,
-// and say two things of the share of the cone that these cover. The fullest sample says it where the lattice
-// stands well, of a body or of bars that cover a part of the cone as of a wall that covers all of it; where the
-// lattice stands badly, it says two thirds of a wall. The run's sum of fronts says it of a sheet, however it
-// lies: projected areas add up to what covers the cone, trilinear filtering spreads a layer over the way but
-// keeps its sum, and what the cone only passes by, as a wall beside it, adds next to nothing. It says too much
-// of bodies behind each other, and nothing of backs. [inferred: products of each step's transparency hide all
-// of a cone that a wall's edge covers by two thirds. The numbers: docs/gi.md#what-hides]
+// What hides. Samples between two clear ones, a run, are of one thing or of things close behind each other, and
+// say three things of the share of the cone that these cover.
+// The fullest sample: right for a body, for bars and for what lies behind each other; of a wall it may say
+// two thirds, where the lattice stands badly.
+// The sum of fronts: projected areas add up to what covers the cone, however a sheet lies, and trilinear
+// filtering spreads a layer over the way but keeps its sum. What the cone passes by, as a wall beside it,
+// adds next to nothing; bodies behind each other count twice, backs not at all.
+// The fullest axis: where voxels are closed along one, a wall crosses them, and the fronts' sum is that of
+// the part of the wall that the cone has met.
+// [inferred: products of each step's transparency hide all of a cone that a wall's edge covers by two
+// thirds. The constants are fitted: docs/gi.md#what-hides]
 struct Run {
     float fullest;    // sample's opacity
     float fronts;     // sum over the way, in voxels
+    float axis;       // fullest along an axis
     float hides;      // share of what arrived at the run
     float arrived;    // share of the cone
 };
-const float FULLEST_OF_WALL = 0.74;    // opacity of the fullest sample of a wall, at least
-const float FRONTS_OF_WALL = 1.05;     // sum of fronts of a wall
-const float LEAST_OF_FULLEST = 0.645;  // a run hides this part of its fullest sample, whatever faces the cone
-const vec2 SURELY_WALL = vec2(0.635, 0.785);  // opacities of the fullest sample, from maybe a wall to surely one
-const float SURELY_HIDES = 0.6;        // more than the least
+const Run CLEAR_RUN = Run(0.0, 0.0, 0.0, 0.0, 1.0);
+const float FULLEST_OF_WALL = 0.65;    // opacity of the fullest sample of a wall, at least
+const float FRONTS_OF_WALL = 1.31;     // sum of fronts of a wall
+const float FRONTS_OF_CLOSED = 0.74;   // sum of fronts of a wall whose voxels are closed along an axis
+const vec2 CLOSED_AXIS = vec2(0.64, 1.0);  // opacities along it, from maybe closed to closed
+const float LEAST_OF_FULLEST = 0.49;   // a run hides this part of its fullest sample, whatever faces the cone
+const vec2 SURELY_WALL = vec2(0.585, 0.735);  // opacities of the fullest sample, from maybe a wall to one
+const float SURELY_HIDES = 0.58;       // more than the least
+// The finest level's voxels stand in steps where the lattice cuts a layer at an angle, and a narrow cone
+// meets fewer of them than there are on average.
+const float FINEST_FRONTS = 1.53;
 
 // Nearly all or nearly nothing is all or nothing: sums over steps are off by some percent.
 float layer_opacity(float covered) { return covered * covered * (3.0 - 2.0 * covered); }
 
 // Adds a sample that stands for so many voxels of the way; returns the share of the cone that it hides anew.
-float extend(inout Run run, Sight s, float voxels) {
+float extend(inout Run run, Sight s, float voxels, float lod) {
     run.fullest = max(run.fullest, s.value.a);
-    run.fronts += s.front * voxels;
+    run.fronts += mix(FINEST_FRONTS, 1.0, min(lod, 1.0)) * s.front * voxels;
+    run.axis = max(run.axis, s.axis);
     float covers = min(run.fullest / FULLEST_OF_WALL, run.fronts / FRONTS_OF_WALL);
+    float closed = min(run.fronts / FRONTS_OF_CLOSED, 1.0) * smoothstep(CLOSED_AXIS.x, CLOSED_AXIS.y, run.axis);
     float least = LEAST_OF_FULLEST * run.fullest + SURELY_HIDES * smoothstep(SURELY_WALL.x, SURELY_WALL.y, run.fullest);
-    float hides = layer_opacity(min(max(covers, least), 1.0));
+    float hides = layer_opacity(min(max(covers, max(closed, least)), 1.0));
     float fresh = run.arrived * max(hides - run.hides, 0.0);
     run.hides = max(run.hides, hides);
     return fresh;
@@ -63,7 +75,7 @@ float exit_distance(vec3 p, vec3 inverse_direction, vec3 direction, vec3 cell, f
     return min(distances.x, min(distances.y, distances.z));
 }
 
-Sight scaled(Sight s, float by) { return Sight(s.value * by, s.front * by); }
+Sight scaled(Sight s, float by) { return Sight(s.value * by, s.front * by, s.axis * by); }
 
 struct ConeSample {
     Sight sight;
@@ -103,6 +115,7 @@ ConeSample cone_sample(vec3 p, float lod, vec3 direction, vec3 inverse_direction
         Sight fine = scaled(node_lookup(child, coarse + 1, child_local, view), 1.0 - share);
         sight.value += fine.value;
         sight.front += fine.front;
+        sight.axis += fine.axis;
     }
     return ConeSample(sight, 0.0, 0.0);
 }
@@ -142,7 +155,7 @@ vec4 cone_trace_between(vec3 Pos, vec3 Direction, float ConeAngle, float start_m
     float t = start_m / u_octree.voxel_m;
     float end = end_m / u_octree.voxel_m;
     vec4 gathered = vec4(0.0);
-    Run run = Run(0.0, 0.0, 0.0, 1.0);
+    Run run = CLEAR_RUN;
     float own_voxels = leaf_voxels(Pos);
     float gap = 0.0;  // voxels since the last sample, clear nodes left out
     for (int i = 0; i < CONE_STEPS_MAX && t < end; ++i) {
@@ -163,10 +176,11 @@ vec4 cone_trace_between(vec3 Pos, vec3 Direction, float ConeAngle, float start_m
             float way = s.empty_exit > 0.0 ? max(s.empty_exit + CONE_SKIP_EPSILON, width * CONE_STEP) : clear_step;
             gap = min(way - s.empty_exit, clear_step) / sampled;
             t += way;
-            run = Run(0.0, 0.0, 0.0, 1.0 - gathered.a);
+            run = CLEAR_RUN;
+            run.arrived = 1.0 - gathered.a;
             continue;
         }
-        float fresh = extend(run, s.sight, 0.5 * (gap + CONE_STEP));
+        float fresh = extend(run, s.sight, 0.5 * (gap + CONE_STEP), s.leaf > 0.0 ? 1.0 : lod);
         gathered += fresh * vec4(s.sight.value.rgb / s.sight.value.a, 1.0);
         gap = CONE_STEP;
         t += sampled * CONE_STEP;
