@@ -40,16 +40,16 @@ struct Run {
     float arrived;    // share of the cone
 };
 const Run CLEAR_RUN = Run(0.0, 0.0, 0.0, 0.0, 1.0);
-const float FULLEST_OF_WALL = 0.65;    // opacity of the fullest sample of a wall, at least
-const float FRONTS_OF_WALL = 1.31;     // sum of fronts of a wall
-const float FRONTS_OF_CLOSED = 0.74;   // sum of fronts of a wall whose voxels are closed along an axis
-const vec2 CLOSED_AXIS = vec2(0.64, 1.0);  // opacities along it, from maybe closed to closed
-const float LEAST_OF_FULLEST = 0.49;   // a run hides this part of its fullest sample, whatever faces the cone
-const vec2 SURELY_WALL = vec2(0.585, 0.735);  // opacities of the fullest sample, from maybe a wall to one
-const float SURELY_HIDES = 0.58;       // more than the least
+const float FULLEST_OF_WALL = 0.684;    // opacity of the fullest sample of a wall, at least
+const float FRONTS_OF_WALL = 1.29;     // sum of fronts of a wall
+const float FRONTS_OF_CLOSED = 0.618;   // sum of fronts of a wall whose voxels are closed along an axis
+const vec2 CLOSED_AXIS = vec2(0.835, 0.916);  // opacities along it, from maybe closed to closed
+const float LEAST_OF_FULLEST = 0.445;   // a run hides this part of its fullest sample, whatever faces the cone
+const vec2 SURELY_WALL = vec2(0.553, 0.703);  // opacities of the fullest sample, from maybe a wall to one
+const float SURELY_HIDES = 0.598;       // more than the least
 // The finest level's voxels stand in steps where the lattice cuts a layer at an angle, and a narrow cone
 // meets fewer of them than there are on average.
-const float FINEST_FRONTS = 1.53;
+const float FINEST_FRONTS = 1.626;
 
 // Nearly all or nearly nothing is all or nothing: sums over steps are off by some percent.
 float layer_opacity(float covered) { return covered * covered * (3.0 - 2.0 * covered); }
@@ -157,7 +157,7 @@ vec4 cone_trace_between(vec3 Pos, vec3 Direction, float ConeAngle, float start_m
     vec4 gathered = vec4(0.0);
     Run run = CLEAR_RUN;
     float own_voxels = leaf_voxels(Pos);
-    float gap = 0.0;  // voxels since the last sample, clear nodes left out
+    float gap = CONE_STEP_CLEAR;  // voxels since the last sample, clear nodes left out
     for (int i = 0; i < CONE_STEPS_MAX && t < end; ++i) {
 #if COUNT_CONE_STEPS
         ++cone_steps;
