@@ -49,7 +49,7 @@ const vec2 SURELY_WALL = vec2(0.553, 0.703);  // opacities of the fullest sample
 const float SURELY_HIDES = 0.598;       // more than the least
 // The finest level's voxels stand in steps where the lattice cuts a layer at an angle, and a narrow cone
 // meets fewer of them than there are on average.
-const float FINEST_FRONTS = 2.0;
+const float FINEST_FRONTS = 2.5;
 
 // Nearly all or nearly nothing is all or nothing: sums over steps are off by some percent.
 float layer_opacity(float covered) { return covered * covered * (3.0 - 2.0 * covered); }
