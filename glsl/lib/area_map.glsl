@@ -79,7 +79,7 @@ float mapped_share(AreaLight light, vec3 p_ws, vec3 normal, float footprint_m) {
         // Another ninth for each point: their rows are the points' columns.
         vec2 at = (vec2(k / 3, (k + k / 3) % 3) - 1.0) * (footprint_m / 3.0);
         vec3 place = p_ws + at.x * across + at.y * along;
-        arrives += weight * point_visibility(light, k, place, normal, footprint_m);
+        arrives += weight * point_visibility(light, k, place, normal, OFF_BY_FOOTPRINT * footprint_m);
         sum += weight;
     }
     return sum > 0.0 ? arrives / sum : 0.0;

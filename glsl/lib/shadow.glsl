@@ -14,6 +14,10 @@ const float SHADOW_KERNEL_RADIUS = 2.1213;
 // one, and where a thin wall meets a floor the filter must not reach past the wall's foot.
 const float SHADOW_OFFSET_BASE = 0.5;
 
+// How far a voxel's surface may be from where it is known to be, by the voxel, and a little more. Much more
+// lets light in under eaves and at the foot of walls.
+const float OFF_BY_FOOTPRINT = 0.2;
+
 // Texels at a cascade's rim that the filter and the offset may need.
 const float SHADOW_CASCADE_MARGIN = 4.0;
 

@@ -43,9 +43,15 @@ int cone_of_voxel(int number, uint octant) {
     return number / TRACED_OF_GROUP * CONE_SPLIT + part;
 }
 
-// Cosine-weighted mean of the radiance around the normal. octant: the voxel's place in its brick.
-vec3 gathered_radiance(vec3 p_ws, vec3 normal, float spacing, uint octant) {
-    vec3 from = p_ws + normal * (0.5 * spacing);
+// Voxels, off the surface, before the cones' own bias.
+const float GATHER_OFFSET = 0.25;
+
+// Cosine-weighted mean of the radiance around a voxel's surface. mean_normal: as direct light takes it.
+// octant: the voxel's place in its brick.
+vec3 gathered_radiance(vec3 p_ws, vec3 mean_normal, float spacing, uint octant) {
+    float agreement = length(mean_normal);
+    vec3 normal = mean_normal / max(agreement, 1e-3);
+    vec3 from = p_ws + normal * (GATHER_OFFSET * spacing);
     vec3 sum = vec3(0.0);
     float weights = 0.0;
     for (int i = 0; i < CONE_COUNT * TRACED_OF_GROUP; ++i) {
@@ -55,8 +61,9 @@ vec3 gathered_radiance(vec3 p_ws, vec3 normal, float spacing, uint octant) {
         sum += weight * narrow_cone(from, normal, direction).rgb;
         weights += weight;
     }
-    return sum / max(weights, 1e-6) + area_light_radiance(p_ws, normal, spacing);
+    float certainty = normal_certainty(agreement * agreement);
+    return sum / max(weights, 1e-6) + mix(1.0, agreement, certainty) * area_light_radiance(p_ws, normal, spacing);
 }
 #else
-vec3 gathered_radiance(vec3 p_ws, vec3 normal, float spacing, uint octant) { return vec3(0.0); }
+vec3 gathered_radiance(vec3 p_ws, vec3 mean_normal, float spacing, uint octant) { return vec3(0.0); }
 #endif

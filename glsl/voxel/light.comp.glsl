@@ -24,9 +24,6 @@ layout(std430) readonly buffer Bricks { Brick bricks[]; };
 layout(std430) readonly buffer Attributes { VoxelAttributes attributes[]; };
 layout(std430) writeonly buffer Radiance { uint radiance[]; };  // RGB9E5
 
-// From the surface of a voxel to where its shadow is looked up: what the height's code may be off and a
-// little more. More lets light in under eaves and at the foot of walls.
-const float SHADOW_OFFSET_VOXELS = 0.2;
 // Mean of the clamped cosine over all directions, for voxels without a normal of their own.
 const float MEAN_COSINE = 0.25;
 
@@ -34,8 +31,7 @@ const float MEAN_COSINE = 0.25;
 // the mean over the voxel, not the value at its lattice point.
 const float NEAREST_LIGHT_VOXELS = 0.5;
 
-// shadow_offset_m: from p_ws along the normal.
-vec3 direct_irradiance(vec3 p_ws, vec3 mean_normal, float spacing, float shadow_offset_m) {
+vec3 direct_irradiance(vec3 p_ws, vec3 mean_normal, float spacing) {
     float squared = dot(mean_normal, mean_normal);
     vec3 normal = mean_normal * inversesqrt(max(squared, 1e-6));
     float certainty = normal_certainty(squared);
@@ -45,7 +41,7 @@ vec3 direct_irradiance(vec3 p_ws, vec3 mean_normal, float spacing, float shadow_
         // Of the mean normal as it is: its length makes it the mean cosine of a voxel's surfaces.
         float cosine = mix(MEAN_COSINE, max(dot(mean_normal, light.to_light), 0.0), certainty);
         if (cosine * max(light.irradiance.r, max(light.irradiance.g, light.irradiance.b)) <= 0.0) continue;
-        float visibility = light_visibility(walk.light, p_ws, normal, shadow_offset_m);
+        float visibility = light_visibility(walk.light, p_ws, normal, OFF_BY_FOOTPRINT * spacing);
         float nearness = lights[walk.light].kind == LIGHT_DIRECTIONAL
                              ? 1.0 : min(light.distance_m / (NEAREST_LIGHT_VOXELS * spacing), 1.0);
         sum += light.irradiance * (cosine * visibility * nearness * nearness);
@@ -64,19 +60,19 @@ void main() {
     int level = unpack_cell_level(cell);
     uvec3 point = unpack_cell(cell) * 2u + (uvec3(octant, octant >> 1, octant >> 2) & 1u);
     float spacing = u_octree.origin_size.w / float(2 << level);
-    vec3 p_ws = u_octree.origin_size.xyz + vec3(point) * spacing;
+    vec3 point_ws = u_octree.origin_size.xyz + vec3(point) * spacing;
 
     vec3 mean_normal = unpackSnorm4x8(voxel.normal).xyz;
     vec3 normal = mean_normal * inversesqrt(max(dot(mean_normal, mean_normal), 1e-6));
     vec4 albedo = unpackUnorm4x8(voxel.albedo);
     // Leaves of coarser regions know no height: their surfaces lie within half of their voxels.
     float height = level == u_octree.leaf_level ? surface_height_voxels(voxel.normal >> HEIGHT_SHIFT) : 0.5;
-    float shadow_offset_m = spacing * (height + SHADOW_OFFSET_VOXELS);
-    vec3 incident = direct_irradiance(p_ws, mean_normal, spacing, shadow_offset_m) * INVERSE_PI;
+    vec3 p_ws = point_ws + normal * (height * spacing);
+    vec3 incident = direct_irradiance(p_ws, mean_normal, spacing) * INVERSE_PI;
 #if SPREAD
     // Bricks that got other slots hold nothing yet to gather.
     if (octree_state.fresh == 0u)
 #endif
-    incident += gathered_radiance(p_ws, normal, spacing, octant);
+    incident += gathered_radiance(p_ws, mean_normal, spacing, octant);
     radiance[index] = rgb9e5_pack(albedo.rgb * incident + rgb9e5_unpack(voxel.emissive));
 }
