@@ -40,10 +40,10 @@ struct Run {
     float arrived;    // share of the cone
 };
 const Run CLEAR_RUN = Run(0.0, 0.0, 0.0, 0.0, 1.0);
-const float FULLEST_OF_WALL = 0.684;    // opacity of the fullest sample of a wall, at least
+const float FULLEST_OF_WALL = 0.64;    // opacity of the fullest sample of a wall, at least
 const float FRONTS_OF_WALL = 1.29;     // sum of fronts of a wall
 const float FRONTS_OF_CLOSED = 0.618;   // sum of fronts of a wall whose voxels are closed along an axis
-const vec2 CLOSED_AXIS = vec2(0.835, 0.916);  // opacities along it, from maybe closed to closed
+const vec2 CLOSED_AXIS = vec2(0.75, 0.9);  // opacities along it, from maybe closed to closed
 const float LEAST_OF_FULLEST = 0.445;   // a run hides this part of its fullest sample, whatever faces the cone
 const vec2 SURELY_WALL = vec2(0.553, 0.703);  // opacities of the fullest sample, from maybe a wall to one
 const float SURELY_HIDES = 0.598;       // more than the least

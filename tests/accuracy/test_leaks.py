@@ -12,18 +12,18 @@ from accuracy.sealed import PHASES, leak
 from elemental.gpu.device import Device
 
 REACHED = {
-    (1.0, "straight"): 0.0065,
-    (1.0, "turned"): 0.0095,
-    (1.0, "diagonal"): 0.007,
-    (2.0, "straight"): 0.0017,
-    (2.0, "turned"): 0.003,
-    (2.0, "diagonal"): 0.006,
+    (1.0, "straight"): 0.0042,
+    (1.0, "turned"): 0.0075,
+    (1.0, "diagonal"): 0.0045,
+    (2.0, "straight"): 0.0013,
+    (2.0, "turned"): 0.0021,
+    (2.0, "diagonal"): 0.0036,
     (4.0, "straight"): 0.001,
-    (4.0, "turned"): 0.0015,
-    (4.0, "diagonal"): 0.0015,
+    (4.0, "turned"): 0.0008,
+    (4.0, "diagonal"): 0.0011,
 }
 """Share of the bright room's light, a mean over the sealed one's walls; by voxels and turn."""
-SPOT = 0.12
+SPOT = 0.06
 """The brightest place, in the worst phase."""
 
 

@@ -117,8 +117,8 @@ def coverage_errors(stage: MakeStage, half_angle: float) -> Array:
     u = np.clip(offset, -1.0, 1.0)
     covered = 0.5 + (u * np.sqrt(1 - u**2) + np.arcsin(u)) / np.pi
     error = hidden - covered
-    print(f"half plane, angle {half_angle}: mean {error.mean():+.3f}, "
-          f"rms {np.sqrt((error**2).mean()):.3f}, worst {np.abs(error).max():.3f}")  # fmt: skip
+    print(f"half plane, angle {half_angle}: {np.abs(error).mean():.3f} off in the mean, "
+          f"{error.mean():+.3f} too much, worst {np.abs(error).max():.3f}")  # fmt: skip
     return np.asarray(error)
 
 
@@ -127,9 +127,9 @@ def test_occlusion_behind_a_half_plane_follows_the_covered_fraction(
     stage: MakeStage, half_angle: float
 ) -> None:
     error = coverage_errors(stage, half_angle)
-    assert np.abs(error).max() <= 0.3
-    assert np.abs(error).mean() <= (0.05 if half_angle < 0.4 else 0.07)
-    assert np.abs(error.mean()) <= 0.05
+    assert np.abs(error).max() <= 0.38
+    assert np.abs(error).mean() <= 0.05
+    assert np.abs(error.mean()) <= 0.035
 
 
 def test_empty_space_is_clear_and_black(stage: MakeStage) -> None:

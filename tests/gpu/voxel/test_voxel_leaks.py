@@ -56,13 +56,13 @@ def arriving(stage: Stage, turn: Array) -> Array:
 
 REACHED = {
     ("straight", 0): 0.011,
-    ("straight", 2): 0.001,
+    ("straight", 2): 0.0018,
     ("straight", 4): 0.001,
-    ("turned", 0): 0.011,
+    ("turned", 0): 0.0065,
     ("turned", 2): 0.001,
     ("turned", 4): 0.001,
-    ("diagonal", 0): 0.014,
-    ("diagonal", 2): 0.001,
+    ("diagonal", 0): 0.0125,
+    ("diagonal", 2): 0.0036,
     ("diagonal", 4): 0.001,
 }
 """Share of the sky's light that gets in, as a mean, by the room's turn and its walls' voxels."""
