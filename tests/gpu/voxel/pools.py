@@ -178,7 +178,8 @@ def sides_met(stage: Stage) -> Array:
 def united_sides(fragments: Array, slots: Array, shape: tuple[int, ...]) -> Array:
     """The same from the queue: ``slots`` (F,) says the voxel of each fragment, in ``shape``."""
     met = np.zeros(int(np.prod(shape)), np.uint32)
-    np.bitwise_or.at(met, slots, fragments["normal"] >> constant("SIDES_MET_SHIFT") & constant("SIDES_MET_MASK"))
+    sides = fragments["normal"] >> constant("SIDES_MET_SHIFT") & constant("SIDES_MET_MASK")
+    np.bitwise_or.at(met, slots, sides)
     return met.reshape(shape)
 
 
