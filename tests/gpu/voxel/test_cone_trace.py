@@ -7,6 +7,8 @@ has to come.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,11 +16,11 @@ import numpy.typing as npt
 import pytest
 
 from elemental.passes.voxel.grid import Grid
-from gpu.rig import at, scene, vector
+from gpu.rig import IDENTITY, at, scene, vector
 from gpu.voxel.probe import trace
 from gpu.voxel.scenes import facing, glowing, part
 from gpu.voxel.stage import MakeStage, Stage
-from shapes import Shape, box, quad
+from shapes import Shape, box, quad, sphere
 
 Array = npt.NDArray[Any]
 
@@ -130,6 +132,83 @@ def test_occlusion_behind_a_half_plane_follows_the_covered_fraction(
     assert np.abs(error).max() <= 0.38
     assert np.abs(error).mean() <= 0.05
     assert np.abs(error.mean()) <= 0.035
+
+
+def hit_share(
+    origins: Array, directions: Array, half_angle: float, meets: Callable[[Array, Array], Array]
+) -> Array:
+    """(N,) share of rays spread evenly over each cone that meet a body, by its closed form."""
+    count = 96
+    k = np.arange(count) + 0.5
+    up = np.where(np.abs(directions[:, 2:]) < 0.9, [[0.0, 0.0, 1.0]], [[1.0, 0.0, 0.0]])
+    across = np.cross(up, directions)
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    along = np.cross(directions, across)
+    cosine = 1.0 - (1.0 - np.cos(half_angle)) * k / count
+    sine, turn = np.sqrt(1.0 - cosine**2), k * 2.39996323
+    rays = cosine[:, None] * directions[:, None] + (sine * np.cos(turn))[:, None] * across[:, None]
+    rays += (sine * np.sin(turn))[:, None] * along[:, None]
+    return np.asarray(meets(origins[:, None], rays).mean(axis=1))
+
+
+def meets_ball(radius: float, origins: Array, rays: Array) -> Array:
+    """Of a ball around the origin."""
+    ahead = -(origins * rays).sum(axis=-1)
+    return np.asarray((ahead > 0) & ((origins**2).sum(axis=-1) - ahead**2 < radius**2))
+
+
+def meets_bars(places: Array, side: float, origins: Array, rays: Array) -> Array:
+    """Of square bars along z, 2.6 long, at so many x, through y = 0."""
+    hit = np.zeros(np.broadcast_shapes(origins.shape, rays.shape)[:-1], bool)
+    for x in places:
+        near = np.full_like(hit, -np.inf, np.float64)
+        far = -near
+        for axis, middle, size in ((0, x, side), (1, 0.0, side), (2, 0.0, 2.6)):
+            ends = np.array([middle - size / 2, middle + size / 2])[:, None, None]
+            t = (ends - origins[..., axis]) / np.where(rays[..., axis] == 0, 1e-9, rays[..., axis])
+            near, far = np.maximum(near, t.min(axis=0)), np.minimum(far, t.max(axis=0))
+        hit |= (near < far) & (far > 0)
+    return hit
+
+
+def from_around(rng: np.random.Generator, target: float) -> tuple[Array, Array]:
+    """Origins and directions of cones from all sides to places near the middle."""
+    d = rng.normal(size=(1500, 3))
+    d /= np.linalg.norm(d, axis=1, keepdims=True)
+    aim = rng.uniform(-target, target, (1500, 3))
+    return aim - d * rng.uniform(8.0, 24.0, (1500, 1)) * VOXEL, d
+
+
+@pytest.mark.parametrize("half_angle", [0.2, 0.335, 0.5])
+def test_bodies_hide_what_they_cover_of_a_cone(stage: MakeStage, half_angle: float) -> None:
+    """Balls as large as the cone or smaller, and bars that it does not look along: neither too much
+    of it nor too little."""
+    rng = np.random.default_rng(11)
+    errors: dict[str, list[Array]] = {"balls": [], "bars": []}
+    for radius in (0.1, 0.2, 0.3):
+        made = stage(scene(part(sphere(radius), 0, IDENTITY), materials=[glowing(1.0)]), grid=GRID)
+        origins, directions = from_around(rng, 1.5 * radius)
+        clear = np.linalg.norm(origins, axis=1) > radius + 2.5 * VOXEL
+        origins, directions = origins[clear], directions[clear]
+        covered = hit_share(origins, directions, half_angle, partial(meets_ball, radius))
+        errors["balls"].append(trace(made, origins, directions, half_angle)[:, 3] - covered)
+    for side, gap in ((1.0, 3.1), (2.0, 5.3)):
+        places = np.arange(-1.1, 1.1, gap * VOXEL)
+        shape = box((side * VOXEL, side * VOXEL, 2.6))
+        bars = [part(shape, 0, at(x, 0, 0)) for x in places]
+        made = stage(scene(*bars, materials=[glowing(1.0)]), grid=GRID)
+        origins, directions = from_around(rng, 0.3)
+        clear = (np.abs(origins[:, 1]) > 4 * VOXEL) & (np.abs(directions[:, 1]) > 0.5)
+        origins, directions = origins[clear], directions[clear]
+        meets = partial(meets_bars, places, side * VOXEL)
+        covered = hit_share(origins, directions, half_angle, meets)
+        errors["bars"].append(trace(made, origins, directions, half_angle)[:, 3] - covered)
+    for name, parts in errors.items():
+        error = np.concatenate(parts)
+        print(f"{name}, angle {half_angle}: {error.mean():+.3f} too much, "
+              f"{np.abs(error).mean():.3f} off in the mean")  # fmt: skip
+        assert abs(error.mean()) <= (0.06 if name == "balls" else 0.13)
+        assert np.abs(error).mean() <= (0.17 if name == "balls" else 0.23)
 
 
 def test_empty_space_is_clear_and_black(stage: MakeStage) -> None:

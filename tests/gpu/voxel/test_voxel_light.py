@@ -10,13 +10,15 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from elemental.core.layout import layouts
 from elemental.gpu.device import Device
 from elemental.passes.area_lights import pack_area_lights
+from elemental.passes.voxel.grid import Grid
 from elemental.scene.model import Environment, Light, Scene
 from formulas import MIRRORED_BY_ROUGH_DIELECTRIC
 from gpu.rig import at, scene, sun, vector
 from gpu.voxel.pools import Pools, leaf_values, rgb9e5_values
-from gpu.voxel.scenes import colored, part
+from gpu.voxel.scenes import colored, facing, part
 from gpu.voxel.stage import Lit, MakeStage, Stage
 from shapes import box, quad
 
@@ -25,6 +27,9 @@ Array = npt.NDArray[Any]
 ALBEDO = vector(0.8, 0.4, 0.1)
 REFLECTED = ALBEDO + MIRRORED_BY_ROUGH_DIELECTRIC
 EMISSION = vector(0.25, 0.0, 1.5)
+Ints = tuple[float, float, float]
+GRID = Grid.fit((vector(-1.42, -1.42, -1.42), vector(1.42, 1.42, 1.42)), 64)
+CORNERS = np.array([[k & 1, k >> 1 & 1, k >> 2] for k in range(8)])
 STRAIGHT, SLANTED = vector(0, -1, 0), vector(0.2, -1.0, 0.6)
 
 
@@ -86,6 +91,51 @@ def test_the_suns_share_is_the_lamps_by_distance(stage: MakeStage) -> None:
     near = distance[:, 0] < 2.5
     # A voxel's point is up to half a voxel above or below the floor.
     assert_radiance(radiance[near], (REFLECTED / np.pi * irradiance + EMISSION)[near], 0.05)
+
+
+@pytest.mark.parametrize("normal", [(0, 1, 0), (1, 2, 3), (-3, 1, 0.5)])
+def test_a_voxel_knows_how_high_its_surface_lies(stage: MakeStage, normal: Ints) -> None:
+    """Over its lattice point, along the normal: two bits, an eighth of a voxel off at most."""
+    unit = vector(*normal) / np.linalg.norm(normal)
+    middle = vector(0.01, 0.02, 0.03)
+    placed = at(*middle) @ facing(unit)
+    made = stage(scene(part(quad(2.0), 0, placed), materials=[colored(1, 1, 1)]), grid=GRID)
+    pools = Pools.read(made)
+    leaves = pools.cell[pools.level == GRID.leaf_level]
+    words = made.octree.attributes.read(layouts().struct("VoxelAttributes"), len(leaves) * 8)
+    held = words["albedo"] > 0
+    stored = ((words["normal"] >> 30) + 0.5) / 4 - 0.5
+    p = made.world((2 * leaves[:, None] + CORNERS).reshape(-1, 3))
+    height = (middle - p) @ unit / GRID.voxel_m
+    assert held.sum() > 1000
+    assert np.abs(height[held]).max() <= 0.51
+    assert normal == (0, 1, 0) or np.ptp(height[held]) > 0.5
+    assert np.abs(stored - height)[held].max() <= 0.13
+
+
+@pytest.mark.parametrize("phase", [0.1, 0.35, 0.6, 0.85])
+def test_a_sheet_closely_over_a_floor_shades_it_wherever_the_lattice_stands(
+    stage: MakeStage, phase: float
+) -> None:
+    """And the open floor beside it does not shade itself."""
+    voxel = GRID.voxel_m
+    y = phase * voxel
+    parts = [part(quad(2.4), 0, at(0, y, 0)), part(quad(1.2), 0, at(0, y + 1.3 * voxel, 0))]
+    lit = scene(*parts, materials=[colored(*ALBEDO)], lights=[sun(SLANTED, 5.0)])
+    made = stage(lit, grid=GRID)
+    pools, (radiance, _) = Pools.read(made), leaf_values(made)
+    leaves = pools.cell[pools.level == GRID.leaf_level]
+    p = made.world(2 * leaves[:, None] + CORNERS)
+    floor_ = (radiance[..., 3] > 0) & (np.abs(p[..., 1] - y) <= 0.5 * voxel)
+    across = np.abs(p[..., [0, 2]]).max(axis=-1)
+    below, beside = floor_ & (across < 0.6 - 4 * voxel), floor_ & (across > 0.6 + 4 * voxel)
+    beside &= across < 1.2 - 2 * voxel
+    assert min(below.sum(), beside.sum()) > 200
+    assert radiance[below][:, :3].max() == 0.0
+    wanted = REFLECTED / np.pi * 5.0 * -sun(SLANTED).direction[1]
+    np.testing.assert_allclose(
+        radiance[beside][:, :3], np.broadcast_to(wanted, (beside.sum(), 3)), rtol=0.02
+    )
 
 
 def test_an_unlit_scene_is_dark_and_its_voxels_opaque(stage: MakeStage) -> None:
