@@ -40,7 +40,7 @@ float opacity_along(vec3 cosines, vec3 opaque) {
 // What a ray sees of voxels at a point, for a voxel of the way.
 struct Sight {
     vec4 value;   // premultiplied radiance, opacity
-    float front;  // projected area of surfaces that face the ray less that of those that face away, at least 0
+    float front;  // projected area of what faces the ray less that of what faces away, at least 0
     float axis;   // opacity along the axis along which it is the greatest
 };
 const Sight NO_SIGHT = Sight(vec4(0.0), 0.0, 0.0);
@@ -85,7 +85,7 @@ float front_visibility(vec3 mean_normal, vec3 direction) {
     return mix(1.0, clamp(0.5 + FRONT_SLOPE * cosine, 0.0, 1.0), normal_certainty(squared_length));
 }
 
-// Area of a voxel with this mean normal that a ray along `direction` sees from the front, of its surface's.
+// Share of its surface's area that a voxel with this mean normal turns towards a ray along `direction`.
 float front_area(vec3 mean_normal, vec3 direction) {
     float squared_length = dot(mean_normal, mean_normal);
     float cosine = -dot(mean_normal, direction) * inversesqrt(max(squared_length, 1e-6));

@@ -6,6 +6,7 @@
 #endif
 
 #include "lib/svo_lookup.glsl"
+#include "lib/cone_run.glsl"
 
 // Content-adaptive steps, in voxels of the cone's level: a long one after a clear sample lands at most
 // on the middle of the next surface, a short one never steps over it.
@@ -20,53 +21,6 @@ int cone_steps = 0;  // samples taken by this invocation's cones
 #endif
 // Cone widths a voxel: a trilinear lookup of a tent-filtered level already sees about two voxels.
 const float CONE_FOOTPRINT = 2.0;
-
-// What hides. Samples between two clear ones, a run, are of one thing or of things close behind each other, and
-// say three things of the share of the cone that these cover.
-// The fullest sample: right for a body, for bars and for what lies behind each other; of a wall it may say
-// two thirds, where the lattice stands badly.
-// The sum of fronts: projected areas add up to what covers the cone, however a sheet lies, and trilinear
-// filtering spreads a layer over the way but keeps its sum. What the cone passes by, as a wall beside it,
-// adds next to nothing; bodies behind each other count twice, backs not at all.
-// The fullest axis: where voxels are closed along one, a wall crosses them, and the fronts' sum is that of
-// the part of the wall that the cone has met.
-// [inferred: products of each step's transparency hide all of a cone that a wall's edge covers by two
-// thirds. The constants are fitted: docs/gi.md#what-hides]
-struct Run {
-    float fullest;    // sample's opacity
-    float fronts;     // sum over the way, in voxels
-    float axis;       // fullest along an axis
-    float hides;      // share of what arrived at the run
-    float arrived;    // share of the cone
-};
-const Run CLEAR_RUN = Run(0.0, 0.0, 0.0, 0.0, 1.0);
-const float FULLEST_OF_WALL = 0.64;    // opacity of the fullest sample of a wall, at least
-const float FRONTS_OF_WALL = 1.29;     // sum of fronts of a wall
-const float FRONTS_OF_CLOSED = 0.618;   // sum of fronts of a wall whose voxels are closed along an axis
-const vec2 CLOSED_AXIS = vec2(0.75, 0.9);  // opacities along it, from maybe closed to closed
-const float LEAST_OF_FULLEST = 0.445;   // a run hides this part of its fullest sample, whatever faces the cone
-const vec2 SURELY_WALL = vec2(0.553, 0.703);  // opacities of the fullest sample, from maybe a wall to one
-const float SURELY_HIDES = 0.598;       // more than the least
-// The finest level's voxels stand in steps where the lattice cuts a layer at an angle, and a narrow cone
-// meets fewer of them than there are on average.
-const float FINEST_FRONTS = 2.5;
-
-// Nearly all or nearly nothing is all or nothing: sums over steps are off by some percent.
-float layer_opacity(float covered) { return covered * covered * (3.0 - 2.0 * covered); }
-
-// Adds a sample that stands for so many voxels of the way; returns the share of the cone that it hides anew.
-float extend(inout Run run, Sight s, float voxels, float lod) {
-    run.fullest = max(run.fullest, s.value.a);
-    run.fronts += mix(FINEST_FRONTS, 1.0, min(lod, 1.0)) * s.front * voxels;
-    run.axis = max(run.axis, s.axis);
-    float covers = min(run.fullest / FULLEST_OF_WALL, run.fronts / FRONTS_OF_WALL);
-    float closed = min(run.fronts / FRONTS_OF_CLOSED, 1.0) * smoothstep(CLOSED_AXIS.x, CLOSED_AXIS.y, run.axis);
-    float least = LEAST_OF_FULLEST * run.fullest + SURELY_HIDES * smoothstep(SURELY_WALL.x, SURELY_WALL.y, run.fullest);
-    float hides = layer_opacity(min(max(covers, max(closed, least)), 1.0));
-    float fresh = run.arrived * max(hides - run.hides, 0.0);
-    run.hides = max(run.hides, hides);
-    return fresh;
-}
 
 // Distance, in finest voxels, from p along direction to where it leaves the cell.
 float exit_distance(vec3 p, vec3 inverse_direction, vec3 direction, vec3 cell, float cell_size) {

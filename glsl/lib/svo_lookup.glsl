@@ -46,8 +46,8 @@ Sight leaf_lookup(Node node, vec3 local, ViewOfVoxels view) {
     float area = 1.0 / voxels_an_area(normal);
     float opacity = min(value.a * area, 1.0);
     vec3 shown = value.rgb * (node_scale(node) * front * opacity / value.a);
-    return Sight(vec4(shown, hidden_share(front * opacity, opacity, view.own)), value.a * area * front_area(normal, view.direction),
-                 value.a);
+    float hides = hidden_share(front * opacity, opacity, view.own);
+    return Sight(vec4(shown, hides), value.a * area * front_area(normal, view.direction), value.a);
 }
 
 Sight node_lookup(Node node, int level, vec3 local, ViewOfVoxels view) {

@@ -61,8 +61,8 @@ vec3 gathered_radiance(vec3 p_ws, vec3 mean_normal, float spacing, uint octant) 
         sum += weight * narrow_cone(from, normal, direction).rgb;
         weights += weight;
     }
-    float certainty = normal_certainty(agreement * agreement);
-    return sum / max(weights, 1e-6) + mix(1.0, agreement, certainty) * area_light_radiance(p_ws, normal, spacing);
+    float mean_cosine = mix(1.0, agreement, normal_certainty(agreement * agreement));
+    return sum / max(weights, 1e-6) + mean_cosine * area_light_radiance(p_ws, normal, spacing);
 }
 #else
 vec3 gathered_radiance(vec3 p_ws, vec3 mean_normal, float spacing, uint octant) { return vec3(0.0); }
