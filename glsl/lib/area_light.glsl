@@ -50,9 +50,6 @@ AreaLight seen_from(AreaLight light, vec3 p_ws) {
     return light;
 }
 
-// Of a face's size: what is so near its plane is the face itself, by rounding, and gets nothing.
-const float LEAST_HEIGHT = 1e-3;
-
 // Integral of the cosine over the part of the face above the horizon, sr: irradiance by its radiance.
 // Edges are clipped to the horizon; where the outline dips below, it is closed along it.
 float face_irradiance(AreaLight face, vec3 p_ws, vec3 normal) {

@@ -4,10 +4,6 @@
 #include "lib/area_light.glsl"
 #include "lib/shadow.glsl"
 
-// Half the side of the cube in a ball whose corners are eight of its points, by its radius: BALL_SPREAD.
-const float BALL_SPREAD = 0.53;
-const int NO_VIEW = -1;
-
 // The k-th of the points that maps look from.
 vec3 shadow_point(AreaLight light, int k) {
     if (light.ball_radius > 0.0) {

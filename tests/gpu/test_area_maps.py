@@ -14,9 +14,10 @@ from elemental.gpu.device import Device
 from elemental.passes.area_lights import AreaLightBlock
 from elemental.passes.emitter_views import EMITTERS_MAX, points
 from elemental.passes.shadow import update_shadows
-from elemental.passes.shadow_plan import ShadowSettings
+from elemental.passes.shadow_plan import ShadowPlanner, ShadowSettings
+from elemental.passes.shadow_views import PackedViews
 from elemental.scene.area_lights import AreaLight
-from elemental.scene.model import Scene
+from elemental.scene.model import Light, Scene
 from glsl.harness import run_glsl
 from gpu.moving import EYE, picture, pose_of
 from gpu.rig import IDENTITY, MakeRig, at, camera, scene, vector
@@ -188,10 +189,19 @@ def test_a_lamp_at_a_ceiling_shadows_nothing_itself(seen: Seen) -> None:
     np.testing.assert_allclose(seen(world, wall, -np.eye(3)[0]), 1.0, atol=1e-3)
 
 
+GROUND = part(quad(300.0), 0, at(0, -0.5, 0))
+
+
+def test_a_large_scene_keeps_shadows_of_what_is_near_a_lamp(seen: Seen) -> None:
+    lamp, plate = part(quad(0.5), LAMP, at(0, 2, 0) @ DOWN), part(quad(2.0), 0, at(0, 1.9, 0))
+    p = np.linspace((-0.6, 0, -0.1), (0.6, 0, 0.1), 25)
+    assert seen(scene(lamp, plate, GROUND, materials=DARK), p, UP).max() == 0.0
+
+
 def test_light_that_grazes_leaves_no_acne(seen: Seen) -> None:
     """Down to 5 degrees, straight and diagonally across the texels."""
     lamp = part(quad(0.2), LAMP, at(0, 0.3, 0) @ DOWN)
-    world = scene(part(quad(8.0), 0, IDENTITY), lamp, materials=DARK)
+    world = scene(part(quad(8.0), 0, IDENTITY), lamp, GROUND, materials=DARK)
     x = np.linspace(0.1, 3.4, 400)
     for across in (0.0, 0.37, 1.0):
         p = np.stack([x, 0 * x, across * x], axis=-1)
@@ -216,6 +226,8 @@ def test_a_ball_is_hidden_by_others_alone(seen: Seen) -> None:
     p = np.stack([x, 0 * x, 0.2 * x], axis=-1)
     alone = scene(floor, ball, rod, materials=DARK)
     np.testing.assert_allclose(seen(alone, p, UP), 1.0, atol=1e-3)
+    coarse = part(sphere(0.3, 6), LAMP, at(0, 2, 0) @ np.diag([1, 1.018, 1.018, 1]))
+    np.testing.assert_allclose(seen(scene(floor, coarse, materials=DARK), p, UP), 1.0, atol=1e-3)
     behind = scene(floor, ball, rod, pane, materials=DARK)
     (lamp,) = AreaLightBlock(behind, True).lights
     wanted = exact(lamp, p, UP, boxes_of((0.6, 0.6, (0, 1, 0))))
@@ -261,9 +273,48 @@ def test_the_strongest_that_stand_get_maps(renderers: Any) -> None:
     assert views.tolist()[:6] == [0, -1, 45, 90, 135, -1]
     assert frame.counters["area_lights_without_maps"] == 1
     assert frame.counters["shadow_maps"] == 45 * EMITTERS_MAX
+    assert renderer._shadows.reads()["u_shadow_maps"].texture.layers > 1
     renderer.set_settings(renderer.settings.replace({"gi.area_shadows": "cones"}))
     frame = renderer.render(EYE, 0.0, 1)
     assert frame.counters["shadow_maps"] == frame.counters["area_lights_without_maps"] == 0
+    assert renderer._shadows.reads()["u_shadow_maps"].texture.layers == 1  # and their memory goes
+
+
+def test_other_lights_leave_the_maps_alone() -> None:
+    """Nor do colours change them: neither views nor tiles."""
+    (lamp,) = AreaLightBlock(room(0.0), True).lights
+    bulb = Light(name="", kind="point", color=vector(1, 1, 1), intensity=1.0,
+                 position=vector(0, 1, 1), direction=vector(0, -1, 0))  # fmt: skip
+    planner = ShadowPlanner(ShadowSettings(256))
+
+    def views(lamps: list[AreaLight], *heights: float) -> PackedViews:
+        lights = [replace(bulb, position=vector(0, y, 1)) for y in heights]
+        return planner.plan(lights, (vector(-4, 0, -4), vector(4, 2, 4)), ANY, (8, 8), lamps).views
+
+    first = views([lamp], 1.0)
+    assert np.isfinite(first.blocks[0]["cut_heights_m"]).all()
+    for again in (views([lamp], 1.1), views([replace(lamp, radiance=vector(1, 2, 3))], *range(40))):
+        assert all(a is b for a, b in zip(again.blocks[:45], first.blocks, strict=False))
+        assert again.tiles[:45] == first.tiles[:45]
+        assert again.tiles[45:] != first.tiles[45:] or len(again.tiles) == len(first.tiles)
+    assert views([replace(lamp, corner=vector(0, 2, 1))]).shown[0] != first.shown[0]
+
+
+def test_another_cut_draws_the_maps_anew(rig: MakeRig) -> None:
+    """A ball of the same area and place, but with corners farther out."""
+    world = scene(part(sphere(0.3, 24), LAMP, at(0, 2, 0)), materials=DARK)
+    view = rig(world, ANY)
+    (lamp,) = AreaLightBlock(world, True).lights
+
+    def stale(light: AreaLight) -> int:
+        plan = view.shadows.planner.plan([], view.gpu.bounds, ANY, (8, 8), [light])
+        return len(view.shadows.place(plan, view.gpu))
+
+    assert [stale(lamp), stale(lamp), stale(replace(lamp, edge_v=1.05 * lamp.edge_v))] == [
+        54,
+        0,
+        54,
+    ]
 
 
 def test_of_a_body_s_faces_the_largest_get_maps() -> None:

@@ -14,7 +14,7 @@ from elemental.scene.model import Scene
 
 NO_MAPS, SOME_MAPS, ALL_MAPS = range(3)
 """Values of AREA_MAPS in glsl/lib/area_shadow.glsl."""
-NO_VIEW = -1
+NO_VIEW = int(layouts().constant("NO_VIEW"))
 
 
 def pack_area_lights(lights: Sequence[AreaLight], views: Sequence[int] = ()) -> Block:

@@ -7,34 +7,32 @@ on the light see the half space before it, six all around.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
 
 from elemental.core import transforms
-from elemental.passes.shadow_fit import Bounds, Cut, FittedView, perspective_view, rim_scale
+from elemental.core.layout import layouts
+from elemental.passes.shadow_fit import Bounds, Cut, FittedView, emitter_view
 from elemental.scene.area_lights import AreaLight
 
 EMITTERS_MAX = 4
-"""Most area lights with shadow maps: of 256 texels a side those take 45 to 54 MiB. One of 54 views
-costs the atrium's first frame 0.4 s on the software driver [measured]."""
-POINTS = 9
-"""AREA_POINTS of glsl/shared/area_light.glsl."""
+"""Most area lights with shadow maps: of 256 texels a side those take 45 to 54 MiB, twice that where
+parts of the scene move. One of 54 views costs the atrium's first frame 0.4 s on the software driver
+[measured]."""
+POINTS = int(layouts().constant("AREA_POINTS"))
+BALL_SPREAD = float(layouts().constant("BALL_SPREAD"))
+LEAST_HEIGHT = float(layouts().constant("LEAST_HEIGHT"))
 SIDE_OF_MAPS = 4
 """Of a side of the other lights' maps theirs are one part [measured: a half instead changes the
 energies of docs/accuracy.md by 1 % at most]."""
 MOST_TEXELS = 512
-"""Their longest side: a light's maps then take 45 to 54 MiB."""
-BALL_SPREAD = 0.53
-"""Of a ball's radius: half the side of the cube whose corners are eight of its nine points. So they
-spread about its middle as its disc does, by R² / 4 along each axis."""
-LEAST_HEIGHT = 1e-3
-"""Of a light's size: what is so near its plane is the light itself, as in area_light.glsl."""
-BALL_MARGIN = 1.03
-"""Of a ball's radius: what is within is the ball itself, whose vertices reach beyond the ball of
-the same area."""
+"""Their longest side: a light's maps then take 45 to 54 MiB, twice that where parts move."""
+BALL_MARGIN = 1.001
+"""Of the distance of a ball's farthest vertex: what is within is the ball itself."""
+FAR_BEHIND_M = 1e30
+"""Below a light's plane: all that is behind it.."""
 
 CUBE = (
     ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0)),
@@ -76,16 +74,13 @@ def points(light: AreaLight) -> npt.NDArray[np.float64]:
 
 def emitter_views(light: AreaLight, bounds: Bounds, resolution: int) -> list[FittedView]:
     """The views from its points, one point after the other."""
-    frame, cut = _frame(light), _cut(light)
-    tangent = 1.0 / rim_scale(resolution)
+    frame, cut, size = _frame(light), _cut(light), _size(light)
     views = []
     for point in points(light):
         for direction, up in CUBE[: views_a_point(light)]:
             towards, above = np.array(direction) @ frame, np.array(up) @ frame
             rotation = transforms.look_at(point, point + towards, above)
-            views.append(
-                perspective_view(point, math.inf, rotation, tangent, bounds, resolution, cut)
-            )
+            views.append(emitter_view(point, size, rotation, bounds, resolution, cut))
     return views
 
 
@@ -100,13 +95,18 @@ def _frame(light: AreaLight) -> npt.NDArray[np.float64]:
     return np.array([along, np.cross(front, along), front])
 
 
+def _size(light: AreaLight) -> float:
+    """m: a ball's diameter, the side of a square as large as a face."""
+    if light.is_ball:
+        return 2.0 * light.ball_radius
+    return float(np.sqrt(np.linalg.norm(np.cross(light.edge_u, light.edge_v))))
+
+
 def _cut(light: AreaLight) -> Cut:
     """What casts no shadow: the light itself, and what is behind it."""
     if light.is_ball:
-        ball = (*light.corner.tolist(), BALL_MARGIN * light.ball_radius)
-        return Cut(ball=ball)
+        return Cut(ball=(*light.corner.tolist(), BALL_MARGIN * light.outer_radius))
     front = _frame(light)[2]
-    size = math.sqrt(np.linalg.norm(np.cross(light.edge_u, light.edge_v)))
     plane = (*front.tolist(), -float(front @ light.corner))
-    least = LEAST_HEIGHT * size
-    return Cut(plane=plane, heights=(-least if light.both_sides else -math.inf, least))
+    least = LEAST_HEIGHT * _size(light)
+    return Cut(plane=plane, heights=(-least if light.both_sides else -FAR_BEHIND_M, least))

@@ -65,6 +65,7 @@ class ShadowMaps:
         self._maps: Texture | None = None
         self._buffers: dict[str, Buffer] = {}
         self._uploaded: dict[str, bytes] = {}
+        self._shown: list[bytes] = []
         self._drawn: dict[Tile, bytes] = {}
         self._still: Texture | None = None
         self._still_drawn: dict[Tile, bytes] = {}
@@ -121,24 +122,28 @@ class ShadowMaps:
         self._allocate(plan.layers, bool(scene.dynamic.any() and not scene.dynamic.all()))
         self._upload("Lights", plan.lights)
         self._upload("LightBounds", plan.bounds)
-        same_views = not self._upload("ShadowViews", plan.views)
-        self.soft = bool((plan.lights["penumbra_radius"] > 0.0).any() and len(plan.views))
+        self._upload("ShadowViews", plan.views.structs)
+        same_views = self._shown == plan.views.shown
+        self._shown = plan.views.shown
+        self.soft = bool((plan.lights["penumbra_radius"] > 0.0).any() and len(plan.views.names))
         self.culled, self.light_words = plan.culled, -(-len(plan.lights) // 32)
-        self.counts = {"shadow_maps": len(plan.views), "lights_without_shadow": plan.unshadowed}
+        self.counts = {
+            "shadow_maps": len(plan.views.names),
+            "lights_without_shadow": plan.unshadowed,
+        }
         self.lamp_key = (plan.key, self._shapes.revision)
         self.light_key = (scene.version, self.lamp_key)
         self._forget_changed(plan, scene)
         for drawn in (self._drawn, self._still_drawn):
             if not same_views:
-                for tile in drawn.keys() - set(plan.tiles):
+                for tile in drawn.keys() - set(plan.views.tiles):
                     del drawn[tile]
-        if same_views and len(self._drawn) == len(plan.tiles):
+        if same_views and len(self._drawn) == len(plan.views.tiles):
             return []
         stale = []
-        for number, (tile, view) in enumerate(zip(plan.tiles, plan.views, strict=True)):
-            content = view.tobytes()
-            if self._drawn.get(tile) != content:
-                self._drawn[tile] = content
+        for number, (tile, shown) in enumerate(zip(plan.views.tiles, self._shown, strict=True)):
+            if self._drawn.get(tile) != shown:
+                self._drawn[tile] = shown
                 stale.append(number)
         return stale
 
@@ -161,23 +166,23 @@ class ShadowMaps:
         if not boxes:
             return
         low, high = (np.array(corners) for corners in zip(*boxes, strict=True))
-        sees = views_with_any(plan.views["clip_from_world"].swapaxes(1, 2), low, high)
+        sees = views_with_any(plan.views.structs["clip_from_world"].swapaxes(1, 2), low, high)
         for number in np.flatnonzero(sees):
-            self._drawn.pop(plan.tiles[number], None)
+            self._drawn.pop(plan.views.tiles[number], None)
 
     def target(self, plan: ShadowPlan, number: int) -> Layer:
         """The depth layer that holds the tile of one view."""
         assert self._maps is not None
-        return Layer(self._maps, plan.tiles[number].layer)
+        return Layer(self._maps, plan.views.tiles[number].layer)
 
     def still_target(self, plan: ShadowPlan, number: int) -> tuple[Layer, bool] | None:
         """The layer of what stands as one view sees it, and whether it has to be drawn anew; None
         where maps are drawn whole."""
         if self._still is None:
             return None
-        tile, content = plan.tiles[number], plan.views[number].tobytes()
-        stale = self._still_drawn.get(tile) != content
-        self._still_drawn[tile] = content
+        tile, shown = plan.views.tiles[number], plan.views.shown[number]
+        stale = self._still_drawn.get(tile) != shown
+        self._still_drawn[tile] = shown
         return Layer(self._still, tile.layer), stale
 
     def copy_still(self, g: Graph, tile: Tile) -> None:
@@ -187,10 +192,10 @@ class ShadowMaps:
         g.copy_texture(self._still, self._maps, layer=tile.layer, tile=_rectangle(tile))
 
     def _allocate(self, layers: int, moves: bool) -> None:
-        """At least so many layers; a single texel where no light may look."""
+        """So many layers; a single texel where no light may look."""
         texels = self.planner.settings.resolution if layers else 1
         if self._maps is not None:
-            if layers <= (self._maps.layers or 0) and texels <= self._maps.width:
+            if (max(layers, 1), texels) == (self._maps.layers or 1, self._maps.width):
                 return
             self._maps.release()
             if self._still is not None:
@@ -238,7 +243,7 @@ def update_shadows(
     ``emitters``: area lights that get maps."""
     plan = maps.planner.plan(lights, scene.bounds, camera, size, emitters)
     stale = maps.place(plan, scene)
-    matrices = plan.views["clip_from_world"][stale].swapaxes(1, 2)
+    matrices = plan.views.structs["clip_from_world"][stale].swapaxes(1, 2)
     scene.look([_viewer(number) for number in stale], matrices)
     for number in stale:
         _draw_view(g, maps, scene, plan, number)
@@ -256,10 +261,10 @@ def _rectangle(tile: Tile) -> tuple[int, int, int, int]:
 
 
 def _draw_view(g: Graph, maps: ShadowMaps, scene: GpuScene, plan: ShadowPlan, number: int) -> None:
-    tile, name = plan.tiles[number], f"shadow.{plan.names[number]}"
+    tile, name = plan.views.tiles[number], f"shadow.{plan.views.names[number]}"
     still = maps.still_target(plan, number)
     cut = number < plan.from_emitters
-    draw = partial(_draw_casters, g, scene, plan.blocks[number], _viewer(number), tile, cut)
+    draw = partial(_draw_casters, g, scene, plan.views.blocks[number], _viewer(number), tile, cut)
     if still is None:
         draw(name, maps.target(plan, number), None)
         return

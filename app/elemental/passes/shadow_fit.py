@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
 
@@ -24,6 +24,13 @@ NEAR_OVER_FAR = 2e-3
 """Near plane of a spot or point light's view as a part of its reach [inferred]."""
 DEPTH_BIAS = 2e-6
 """Rounding of a depth computed twice, in units of the depth buffer: some 32 float32 steps at 1."""
+NEAR_OVER_SIZE = 0.02
+"""Of an area light's size, which its near plane is at most: a scene may reach 1000 times as far."""
+EMITTER_BIAS = 5e-7
+"""`DEPTH_BIAS` of area lights: eight steps. At 0.02 of their size it stays below 0.4 texels of 256
+a side, which their filter allows, up to 120 times the size away."""
+LEAST_NEAR_OVER_FAR = 20.0 * EMITTER_BIAS
+"""Nearer, the bias would push the far plane beyond infinity."""
 NEARS_REACHED = 4000.0
 """Where no reach is set, cascades end so many near planes away: four diagonals of a scene that is
 seen whole (`FRAMING_NEAR`), 300 m seen from 7 m away in one of 10 km (`EYE_NEAR`) [inferred]."""
@@ -60,12 +67,13 @@ SEES_ALL = Cut()
 @dataclass(frozen=True)
 class FittedView:
     """One shadow view: clip_from_world (4, 4), the width of a texel at a clip w of 1, in m, the
-    near and the far plane in m, and what it does not see."""
+    near and the far plane in m, what it does not see, and the rounding of its depths."""
 
     clip_from_world: FloatArray
     texel: float
     depth_range: tuple[float, float]
     cut: Cut = SEES_ALL
+    depth_bias: float = DEPTH_BIAS
 
 
 @dataclass(frozen=True)
@@ -130,7 +138,7 @@ def spot_view(light: Light, bounds: Bounds, resolution: int) -> FittedView:
     tangent = math.tan(min(light.outer_angle, math.radians(85.0))) / rim_scale(resolution)
     position = light.position.astype(np.float64)  # far away, a step of 1 m is none in 32 bits
     rotation = transforms.look_at(position, position + light.direction)
-    return perspective_view(position, light.range, rotation, tangent, bounds, resolution)
+    return _perspective(position, light.range, rotation, tangent, bounds, resolution)
 
 
 def point_views(light: Light, bounds: Bounds, resolution: int) -> list[FittedView]:
@@ -138,7 +146,7 @@ def point_views(light: Light, bounds: Bounds, resolution: int) -> list[FittedVie
     tangent = 1.0 / rim_scale(resolution)
     position = light.position.astype(np.float64)
     return [
-        perspective_view(
+        _perspective(
             position,
             light.range,
             transforms.look_at(position, position + np.array(direction), up),
@@ -183,24 +191,47 @@ def _ortho(
     return FittedView(clip_from_view @ view_from_world, 2.0 * half / resolution, depth_range)
 
 
-def perspective_view(
+def emitter_view(
+    position: npt.NDArray[np.float64],
+    size_m: float,
+    view_from_world: FloatArray,
+    bounds: Bounds,
+    resolution: int,
+    cut: Cut,
+) -> FittedView:
+    """A right angle widened by the rim, from a position (3,) on an area light of a size."""
+    far = _far(position, math.inf, bounds)
+    near = min(NEAR_OVER_FAR * far, max(NEAR_OVER_SIZE * size_m, LEAST_NEAR_OVER_FAR * far))
+    tangent = 1.0 / rim_scale(resolution)
+    made = _square(view_from_world, tangent, (near, far), resolution)
+    return replace(made, cut=cut, depth_bias=EMITTER_BIAS)
+
+
+def _perspective(
     position: npt.NDArray[np.float64],
     range_m: float,
     view_from_world: FloatArray,
     tangent: float,
     bounds: Bounds,
     resolution: int,
-    cut: Cut = SEES_ALL,
 ) -> FittedView:
-    """That of a square picture from a position (3,), as far as the scene or the range goes;
-    tangent: of half the angle that it spans."""
+    """That of a square picture from a position (3,), as far as the scene or the range goes."""
+    far = _far(position, range_m, bounds)
+    return _square(view_from_world, tangent, (NEAR_OVER_FAR * far, far), resolution)
+
+
+def _far(position: npt.NDArray[np.float64], range_m: float, bounds: Bounds) -> float:
     corners = box_corners(*bounds)
     farthest = float(np.linalg.norm(corners - position, axis=1).max())
-    far = max(min(range_m, farthest) * 1.001, 1e-6)
-    depth_range = NEAR_OVER_FAR * far, far
+    return max(min(range_m, farthest) * 1.001, 1e-6)
+
+
+def _square(
+    view_from_world: FloatArray, tangent: float, depth_range: tuple[float, float], resolution: int
+) -> FittedView:
+    """tangent: of half the angle that it spans."""
     clip_from_view = transforms.perspective(2.0 * math.atan(tangent), 1.0, *depth_range)
-    texel = 2.0 * tangent / resolution
-    return FittedView(clip_from_view @ view_from_world, texel, depth_range, cut)
+    return FittedView(clip_from_view @ view_from_world, 2.0 * tangent / resolution, depth_range)
 
 
 def _splits(near: float, far: float, count: int) -> Sequence[tuple[float, float]]:

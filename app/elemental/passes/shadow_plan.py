@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from elemental.core.layout import Block
 from elemental.passes import shadow_fit
 from elemental.passes.camera_view import clip_range
 from elemental.passes.light_pack import light_bounds, pack_lights, reach
@@ -16,12 +15,13 @@ from elemental.passes.light_shapes import Shape, shapes_of
 from elemental.passes.scene_pack import Array
 from elemental.passes.shadow_budget import FACES, ShadowBudget, Shares
 from elemental.passes.shadow_fit import Bounds, FittedView, ViewFrustum
-from elemental.passes.shadow_tiles import Tile, TilePool
+from elemental.passes.shadow_tiles import TilePool
 from elemental.passes.shadow_views import (
+    EmitterViews,
     FixedViews,
+    PackedViews,
     PlacedView,
-    pack_views,
-    shadow_pass,
+    pack_placed,
     views_of_emitters,
 )
 from elemental.scene.area_lights import AreaLight
@@ -50,9 +50,8 @@ class ShadowSettings:
 
 @dataclass(frozen=True)
 class ShadowPlan:
-    """lights (L,) of the struct Light, never empty; views (V,) of the struct ShadowView, those of
-    emitters first, the cascades last; blocks ShadowPass, names and tiles by view; `layers`
-    that no camera exceeds; unshadowed: lights that the budget leaves without a map.
+    """lights (L,) of the struct Light, never empty; views: those of emitters first, the cascades
+    last; `layers` that no camera exceeds; unshadowed: lights that the budget leaves without a map.
     bounds (L, 4) of `light_bounds`; culled: whether they are worth it. shapes: of `shapes_of`.
     key: differs when a light or a fixed view does. from_emitters: the first so many views are of
     area lights."""
@@ -60,10 +59,7 @@ class ShadowPlan:
     lights: Array
     bounds: Array
     culled: bool
-    views: Array
-    blocks: list[Block]
-    names: list[str]
-    tiles: list[Tile]
+    views: PackedViews
     layers: int
     unshadowed: int
     shapes: list[Shape]
@@ -98,6 +94,7 @@ class ShadowPlanner:
     _shapes: list[Shape] = field(default_factory=list)
     _spheres: Array = field(default_factory=lambda: light_bounds([], []))
     _fitted: dict[int, tuple[Hashable, list[FittedView]]] = field(default_factory=dict)
+    _of_emitters: EmitterViews | None = None
     _fixed: FixedViews | None = None
     _packed: PlacedLights | None = None
 
@@ -135,11 +132,8 @@ class ShadowPlanner:
             lights=placed.structs,
             bounds=placed.bounds,
             culled=self._culled,
-            views=np.concatenate([fixed.packed, pack_views(moved, self.settings.resolution)]),
-            blocks=fixed.blocks + [shadow_pass(view) for view in moved],
-            names=fixed.names + [view.name for view in moved],
-            tiles=fixed.tiles + [view.tile for view in moved],
-            layers=self._pool.layers,
+            views=fixed.views + pack_placed(moved, self.settings.resolution),
+            layers=self._pool.first + self._pool.layers,
             unshadowed=shares.unshadowed,
             shapes=self._shapes,
             key=placed.key,
@@ -169,27 +163,23 @@ class ShadowPlanner:
         key = (tuple(shares.sides), bounds[0].tobytes(), bounds[1].tobytes())
         if self._fixed is not None and self._fixed.key == key:
             return self._fixed
-        of_emitters = views_of_emitters(self._emitters, bounds, self.settings.resolution)
-        layers = shares.layers + of_emitters.layers
-        if layers > self._pool.layers:
-            self._pool = TilePool(layers, self.settings.resolution)
-        tiles = self._pool.assign(self._sides(lights, shares.sides) | of_emitters.sides)
-        placed = of_emitters.placed(tiles)
+        resolution = self.settings.resolution
+        last = self._of_emitters
+        self._of_emitters = views_of_emitters(self._emitters, bounds, resolution, last)
+        emitters, first = self._of_emitters.views, self._of_emitters.layers
+        if shares.layers > self._pool.layers or first != self._pool.first:
+            self._pool = TilePool(max(shares.layers, self._pool.layers), resolution, first)
+        tiles = self._pool.assign(self._sides(lights, shares.sides))
+        placed: list[PlacedView] = []
         first_view = []
         for number, (light, side) in enumerate(zip(lights, shares.sides, strict=True)):
-            first_view.append(len(placed) if side else -1)
+            first_view.append(len(emitters.names) + len(placed) if side else -1)
             for k, view in enumerate(self._fit(number, light, bounds, side) if side else []):
                 name = f"{number}.{light.kind}.{k}"
                 placed.append(PlacedView(name, view, tiles[number, k]))
         self._packed = None
         self._fixed = FixedViews(
-            key,
-            len(of_emitters.names),
-            first_view,
-            pack_views(placed, self.settings.resolution),
-            [shadow_pass(view) for view in placed],
-            [view.name for view in placed],
-            [view.tile for view in placed],
+            key, len(emitters.names), first_view, emitters + pack_placed(placed, resolution)
         )
         return self._fixed
 
@@ -220,7 +210,7 @@ class ShadowPlanner:
         for number, first in enumerate(fixed.first_view):
             if lights[number].kind != "directional" or first < 0:
                 continue
-            coarsest = float(fixed.packed["texel"][first])
+            coarsest = float(fixed.views.structs["texel"][first])
             views = _cascades(lights[number], bounds, frustum, self.settings, coarsest)
             found[number] = [
                 PlacedView(f"{number}.cascade.{k}", view, self._pool.held[number, 1 + k])
@@ -234,7 +224,7 @@ class ShadowPlanner:
         """cascades: how many by the number of the sun."""
         if self._packed is None or self._packed.cascades != cascades:
             spans = [(0, 0)] * len(lights)
-            first = len(fixed.names)
+            first = len(fixed.views.names)
             for number, count in cascades.items():
                 spans[number] = first, count
                 first += count
@@ -244,14 +234,15 @@ class ShadowPlanner:
                 spheres = light_bounds(lights, ranges)
             penumbras = self.settings.penumbras
             structs = pack_lights(lights, fixed.first_view, spans, ranges, penumbras)
-            self._packed = PlacedLights(cascades, structs, spheres, _key(structs, fixed.packed))
+            self._packed = PlacedLights(cascades, structs, spheres, _key(structs, fixed.views))
         return self._packed
 
 
-def _key(lights: Array, fixed: Array) -> Hashable:
+def _key(lights: Array, fixed: PackedViews) -> Hashable:
     """Of the structs Light, but for what follows the camera, and of the fixed views."""
     fields = [name for name in lights.dtype.names or () if "cascade" not in name]
-    return lights[fields].tobytes(), fixed[["clip_from_world", "texel"]].tobytes()
+    blocks = b"".join(block.tobytes() for block in fixed.blocks)
+    return lights[fields].tobytes(), blocks, fixed.structs["texel"].tobytes()
 
 
 def _fit(light: Light, bounds: Bounds, side: int) -> list[FittedView]:

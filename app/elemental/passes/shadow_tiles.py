@@ -18,13 +18,15 @@ class Tile(NamedTuple):
 
 @dataclass
 class TilePool:
-    """`layers` squares of `side` texels, cut into tiles of half, a quarter, … the side.
+    """`layers` squares of `side` texels from the layer `first` on, cut into tiles of half, a
+    quarter, … the side.
 
     Tiles are kept by the key that asked for them, so that what was drawn into them stays.
     """
 
     layers: int
     side: int
+    first: int = 0
     held: dict[Hashable, Tile] = field(default_factory=dict)
     _free: dict[int, set[Tile]] = field(default_factory=dict)
 
@@ -33,7 +35,8 @@ class TilePool:
 
     def _clear(self) -> None:
         self.held.clear()
-        self._free = {self.side: {Tile(layer, 0, 0, self.side) for layer in range(self.layers)}}
+        layers = range(self.first, self.first + self.layers)
+        self._free = {self.side: {Tile(layer, 0, 0, self.side) for layer in layers}}
 
     def assign(self, sides: Mapping[Hashable, int]) -> dict[Hashable, Tile]:
         """A tile of the wanted side for each key; together they must not exceed the pool's area.

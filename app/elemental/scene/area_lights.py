@@ -40,9 +40,9 @@ class AreaLight:
 
     corner, edge_u, edge_v (3,) float32 m, world space: points are corner + s edge_u + t edge_v with
     s, t in 0..1, and cross(edge_u, edge_v) points to its front; of a ball the corner is the centre,
-    edge_u a radius, and edge_v unused. radiance (3,) float32 nit; `instance` is the index of what
-    it belongs to in Scene.instances; `face` (3, 3) float64 are corner and edges in that instance's
-    own space.
+    edge_u a radius, and edge_v that of a ball around all of its vertices. radiance (3,) float32
+    nit; `instance` is the index of what it belongs to in Scene.instances; `face` (3, 3) float64 are
+    corner and edges in that instance's own space.
     """
 
     instance: int
@@ -58,6 +58,11 @@ class AreaLight:
     def ball_radius(self) -> float:
         """m; 0 where it is a parallelogram."""
         return float(np.linalg.norm(self.edge_u)) if self.is_ball else 0.0
+
+    @property
+    def outer_radius(self) -> float:
+        """m: how far from its centre a ball's vertices reach; 0 where it is a parallelogram."""
+        return float(np.linalg.norm(self.edge_v)) if self.is_ball else 0.0
 
     @property
     def flux(self) -> float:
@@ -140,7 +145,8 @@ def parallelograms(mesh: Mesh) -> npt.NDArray[np.float64] | None:
 
 
 def ball(mesh: Mesh) -> npt.NDArray[np.float64] | None:
-    """(1, 3, 3) centre, radius along x, and nothing: a ball of the mesh's area, in its own space.
+    """(1, 3, 3) centre, radius of a ball of the mesh's area and of one around its vertices, both
+    along x, in its own space.
 
     None where the triangles do not enclose one whose front is outside.
     """
@@ -157,7 +163,8 @@ def ball(mesh: Mesh) -> npt.NDArray[np.float64] | None:
     if volume < LEAST_BALL * 4.0 / 3.0 * math.pi * mean**3:
         return None
     area = 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
-    return np.array([[centre, (math.sqrt(area / (4.0 * math.pi)), 0.0, 0.0), np.zeros(3)]])
+    radius = math.sqrt(area / (4.0 * math.pi))
+    return np.array([[centre, (radius, 0.0, 0.0), (float(distances.max()), 0.0, 0.0)]])
 
 
 def _shape(mesh: Mesh) -> tuple[npt.NDArray[np.float64], bool] | None:
@@ -210,6 +217,8 @@ def _placed(
     linear = matrix[:3, :3]
     corner = linear @ face[0] + matrix[:3, 3]
     edges = face[1:] @ linear.T
+    if is_ball:
+        edges[1] = face[2] * np.linalg.norm(linear, 2)  # however it is scaled
     return AreaLight(
         instance=number,
         corner=corner.astype(np.float32),
