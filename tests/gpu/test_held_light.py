@@ -20,8 +20,10 @@ from elemental.settings import SETTINGS, Setting
 from gpu.artist import Artist
 from gpu.moving import EYE, SIZE, stage
 from gpu.moving import SETTINGS as SMALL
-from gpu.rig import camera, material, vector
+from gpu.rig import at, camera, material, mesh, vector
 from gpu.test_material_motion import TICKING
+from gpu.voxel.scenes import glowing, turned
+from shapes import quad
 
 Array = npt.NDArray[Any]
 TEXTS = frozenset(key for key, setting in SETTINGS.items() if setting.kind == "text")
@@ -30,6 +32,9 @@ MOST = 3
 """How far numbers are changed: a thousand shadow maps need more memory than a test may."""
 DECAL = np.array([[1, 0, 0, 0], [0, 0, 1, 0.2], [0, -1, 0, 2], [0, 0, 0, 1]], np.float32)
 """world_from_decal: onto the floor of the stage, in view."""
+
+LAMP = at(0.5, 1.8, 0.5) @ turned(vector(1, 0, 0), np.pi)
+"""It stands, looks down, and has shadow maps."""
 
 
 class Viewer:
@@ -69,7 +74,11 @@ def viewer(device: Device, artist: Artist) -> Iterator[Viewer]:
     world = stage()
     world.environment = Environment(None, vector(0.3, 0.6, 1.0), 1.0)
     ticking = artist.definition(TICKING.replace("animated = true", "animated = false"))
-    world.materials += [material(definition=ticking), material(roughness=0.1)]
+    world.instances.append(
+        replace(world.instances[1], mesh=len(world.meshes), world_from_local=LAMP)
+    )
+    world.meshes.append(mesh(quad(0.6), len(world.materials)))
+    world.materials += [glowing(9.0), material(definition=ticking), material(roughness=0.1)]
     *_, worn, polish = range(len(world.materials))
     world.meshes[1] = replace(world.meshes[1], material=worn)
     world.decals = [Decal("polish", polish, DECAL, channels=("roughness",))]
@@ -103,6 +112,7 @@ def test_no_setting_leaves_stale_light(viewer: Viewer) -> None:
         if not np.array_equal(viewer.check(key), plain):
             changed.add(key)
     assert len(changed) > 15, changed
+    assert "gi.area_shadows" in changed
     viewer.renderer.set_settings(SMALL)
     assert np.array_equal(viewer.check("the defaults again"), plain)
 
