@@ -100,20 +100,28 @@ struct AreaSample {
     int face;           // -1: no light arrives
     vec3 point_ws;      // the middle of the part
     float radius;       // of a disc as large as the part, m
-    int part;           // of the face's 3x3 in which that point is
+    int part;           // of the face's nine in which that point is
     vec3 irradiance;    // of the part without shadow, times AREA_STRATA
 };
 
-// A ninth of a face, 3x3.
+// How many of a face's nine parts lie along each edge.
+ivec2 parts_along(AreaLight face) {
+    float u = length(face.edge_u_ws);
+    float v = length(face.edge_v_ws);
+    return u > LONG_FACE * v ? ivec2(9, 1) : v > LONG_FACE * u ? ivec2(1, 9) : ivec2(3);
+}
+
+// A ninth of a face.
 AreaLight part_of_face(AreaLight face, int part) {
-    face.corner_ws += (float(part % 3) * face.edge_u_ws + float(part / 3) * face.edge_v_ws) / 3.0;
-    face.edge_u_ws /= 3.0;
-    face.edge_v_ws /= 3.0;
+    ivec2 count = parts_along(face);
+    face.edge_u_ws /= float(count.x);
+    face.edge_v_ws /= float(count.y);
+    face.corner_ws += float(part % count.x) * face.edge_u_ws + float(part / count.x) * face.edge_v_ws;
     face.area_m2 /= 9.0;
     return face;
 }
 
-// One of the 3x3 parts of a light's face by itself.
+// One of the nine parts of a light's face by itself.
 AreaSample sample_part(int light, vec3 p_ws, vec3 normal, int stratum) {
     AreaLight part = part_of_face(seen_from(u_area_lights.faces[light], p_ws), stratum);
     AreaSample s;

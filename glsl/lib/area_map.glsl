@@ -11,7 +11,8 @@ vec3 shadow_point(AreaLight light, int k) {
         vec3 octant = vec3((ivec3(k - 1) >> ivec3(0, 1, 2)) & 1) * 2.0 - 1.0;
         return light.corner_ws + BALL_SPREAD * light.ball_radius * octant;
     }
-    vec2 at = (vec2(k % 3, k / 3) + 0.5) / 3.0;
+    ivec2 count = parts_along(light);
+    vec2 at = (vec2(k % count.x, k / count.x) + 0.5) / vec2(count);
     return light.corner_ws + at.x * light.edge_u_ws + at.y * light.edge_v_ws;
 }
 
@@ -93,6 +94,8 @@ const float NINTH_TEXELS = 0.75;
 // What the surface may stand out of the plane of its shading normal, in texels, and by the disc's radius.
 const float ROUGH_TEXELS = 0.4;
 const float ROUGH_SHARE = 0.1;
+// Sine between a long face and the way to it, below which its ellipse has no direction.
+const float LEAST_SHOWN = 1e-3;
 
 // A surface's plane from a point of a light, in the light's frame, and the place on it that is lit.
 struct LitPlane {
@@ -145,7 +148,7 @@ bool look_at_four(AreaLight light, int k, LitPlane lit, vec3 way, out Four four)
 }
 
 // Visibility 0..1 of a disc of the light around its k-th point, of a radius in m, as wide as what hides it
-// makes its penumbra. [Fernando05 "Percentage-Closer Soft Shadows"]
+// makes its penumbra; of a long face of an ellipse as long as its part is seen to be. [Fernando05 "Percentage-Closer Soft Shadows"]
 float disc_visibility(AreaLight light, int k, vec3 p_ws, vec3 normal, float radius) {
     vec3 p = in_frame(light, p_ws - shadow_point(light, k));
     LitPlane lit;
@@ -159,13 +162,29 @@ float disc_visibility(AreaLight light, int k, vec3 p_ws, vec3 normal, float radi
     lit.distance_m = distance_m;
     vec3 across = normalize(abs(axis.y) < 0.9 ? vec3(axis.z, 0.0, -axis.x) : vec3(0.0, axis.z, -axis.y));
     vec3 along = cross(axis, across);
+    vec2 radii = vec2(radius);
+    ivec2 parts = parts_along(light);
+    if (light.ball_radius == 0.0 && parts.x != parts.y) {
+        bool first = parts.x > parts.y;
+        float u = length(light.edge_u_ws) / float(parts.x);
+        float v = length(light.edge_v_ws) / float(parts.y);
+        vec3 wide = in_frame(light, normalize(first ? light.edge_u_ws : light.edge_v_ws));
+        wide -= dot(wide, axis) * axis;
+        float shown = length(wide);
+        if (shown > LEAST_SHOWN) {
+            across = wide / shown;
+            along = cross(axis, across);
+        }
+        float stretch = sqrt(first ? u / v : v / u);
+        radii = radius * vec2(stretch * shown, 1.0 / stretch);
+    }
     float cosine = -lit.height / distance_m;
     float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
     float texel_m = shadow_views[view].texel * distance_m;
     float disc_max = distance_m * min(DISC_OF_HEIGHT * cosine / max(sine, 1e-3), DISC_OF_DISTANCE);
     float disc_min = min(NINTH_TEXELS * texel_m, disc_max);
     lit.height = min(lit.height + ROUGH_TEXELS * texel_m, 0.5 * lit.height);
-    float search_m = clamp(radius * WIDEST_SEARCH, disc_min, disc_max);
+    vec2 search_m = clamp(radii * WIDEST_SEARCH, disc_min, disc_max);
     vec2 growth = vec2(0.0);  // summed, and of how many texels
     Four four;
     for (int i = 0; i < NINTH_BLOCKERS; ++i) {
@@ -175,11 +194,11 @@ float disc_visibility(AreaLight light, int k, vec3 p_ws, vec3 normal, float radi
         growth += vec2(dot(blocks, four.plane / four.nearest - 1.0), dot(blocks, vec4(1.0)));
     }
     if (growth.y == 0.0) return 1.0;
-    float radius_m = clamp(radius * growth.x / growth.y, disc_min, disc_max);
-    lit.height = min(lit.height + ROUGH_SHARE * radius_m, 0.5 * lit.height);
+    vec2 radii_m = clamp(radii * growth.x / growth.y, disc_min, disc_max);
+    lit.height = min(lit.height + ROUGH_SHARE * max(radii_m.x, radii_m.y), 0.5 * lit.height);
     float arrives = 0.0;
     for (int i = 0; i < NINTH_SAMPLES; ++i) {
-        vec2 at = radius_m * sunflower(i, NINTH_SAMPLES);
+        vec2 at = radii_m * sunflower(i, NINTH_SAMPLES);
         if (!look_at_four(light, k, lit, p + at.x * across + at.y * along, four)) arrives += 1.0;
         else arrives += dot(four.weight, vec4(greaterThanEqual(four.nearest, four.plane)));
     }

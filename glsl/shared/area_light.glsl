@@ -1,6 +1,8 @@
 // Emissive parallelograms: points are corner + s edge_u + t edge_v with s, t in 0..1. And balls.
 const int AREA_LIGHTS_MAX = 16;
 const int AREA_POINTS = 9;  // that a light's shadow maps look from
+// Of a face's edges: from here on its nine parts lie in one row along the longer.
+const float LONG_FACE = 3.0;
 const int NO_VIEW = -1;
 // Half the side of the cube in a ball whose corners are eight of its points, by its radius: so they spread
 // about its middle as its disc does, by a quarter of the squared radius along each axis.

@@ -157,6 +157,20 @@ def test_a_pane_throws_its_umbra_and_penumbra(seen: Seen, tilt: float) -> None:
     assert_near(found, wanted)
 
 
+@pytest.mark.parametrize("turns", [0, 1])
+def test_a_tube_throws_one_shadow_of_a_bar(seen: Seen, turns: int) -> None:
+    """A wide one of a bar across, a sharp one of a bar along; whichever of its edges is longer."""
+    tube = at(0, 2, 0) @ DOWN @ np.diag([2, 1, 0.05, 1]) @ turned(UP, turns * np.pi / 2)
+    floor, lit = part(quad(8.0), 0, IDENTITY), part(quad(), LAMP, tube)
+    for w, d, to in ((0.2, 3.0, (1.8, 0, 0.2)), (4.0, 0.2, (0.2, 0, 0.4))):
+        bar = part(box((w, 0.1, d)), 0, at(0, 1, 0))
+        world = scene(floor, lit, bar, materials=DARK)
+        (lamp,) = AreaLightBlock(world, True).lights
+        p = np.linspace(-np.array(to), to, 73)
+        wanted = exact(lamp, p, UP, boxes_of((w, d, (0.0, 1.0, 0.0))))
+        assert_near(seen(world, p, UP), wanted)
+
+
 def test_bars_let_through_what_is_open_between_them(seen: Seen) -> None:
     """A third of the way is barred; voxels as wide as the gaps see the same share."""
     rng = np.random.default_rng(3)

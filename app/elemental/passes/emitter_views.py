@@ -1,8 +1,8 @@
 """Where the shadow maps of area lights look from. No GL here.
 
-Each of the strongest that stand has nine points: the middles of a parallelogram's 3x3 parts, or
-nine within a ball, spread as its disc is from wherever it is seen. Five faces of a cube that stands
-on the light see the half space before it, six all around.
+Each of the strongest that stand has nine points: the middles of a parallelogram's nine parts, 3x3
+or in a row where it is long, or nine within a ball, spread as its disc is from wherever it is seen.
+Five faces of a cube that stands on the light see the half space before it, six all around.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ EMITTERS_MAX = 4
 parts of the scene move. One of 54 views costs the atrium's first frame 0.4 s on the software driver
 [measured]."""
 POINTS = int(layouts().constant("AREA_POINTS"))
+LONG_FACE = float(layouts().constant("LONG_FACE"))
 BALL_SPREAD = float(layouts().constant("BALL_SPREAD"))
 LEAST_HEIGHT = float(layouts().constant("LEAST_HEIGHT"))
 SIDE_OF_MAPS = 4
@@ -68,8 +69,17 @@ def points(light: AreaLight) -> npt.NDArray[np.float64]:
     if light.is_ball:
         signs = np.array([[k & 1, k >> 1 & 1, k >> 2] for k in range(8)]) * 2.0 - 1.0
         return np.concatenate([[corner], corner + BALL_SPREAD * light.ball_radius * signs])
-    middles = (np.arange(3) + 0.5) / 3.0
-    return np.array([corner + s * u + t * v for t in middles for s in middles])
+    columns, rows = _parts(u, v)
+    middles_u, middles_v = ((np.arange(count) + 0.5) / count for count in (columns, rows))
+    return np.array([corner + s * u + t * v for t in middles_v for s in middles_u])
+
+
+def _parts(u: npt.NDArray[np.float64], v: npt.NDArray[np.float64]) -> tuple[int, int]:
+    """How many lie along each edge: `parts_along` of glsl/lib/area_light.glsl."""
+    long_u, long_v = np.linalg.norm(u), np.linalg.norm(v)
+    if long_u > LONG_FACE * long_v:
+        return POINTS, 1
+    return (1, POINTS) if long_v > LONG_FACE * long_u else (3, 3)
 
 
 def emitter_views(light: AreaLight, bounds: Bounds, resolution: int) -> list[FittedView]:
