@@ -76,3 +76,21 @@ float whole_visibility(vec3 p_ws, vec3 normal, int face, float footprint_m) {
     return traced_visibility(p_ws, normal, face, middle, sqrt(seen.area_m2 * INVERSE_PI));
 #endif
 }
+
+// What lies within so many of a voxel's footprints of a light's plane shares voxels with it, and is taken
+// for the light.
+const float AREA_GAP_FOOTPRINTS = 1.5;
+
+// Irradiance from all lights with shadow, each seen as a whole. footprint_m: see whole_visibility.
+vec3 shadowed_irradiance(vec3 p_ws, vec3 normal, float footprint_m) {
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < u_area_lights.count; ++i) {
+        float height = max(height_over_light(u_area_lights.faces[i], p_ws), 0.0);
+        if (height < AREA_GAP_FOOTPRINTS * footprint_m) continue;
+        AreaLight face = seen_from(u_area_lights.faces[i], p_ws);
+        float unshadowed = face_irradiance(face, p_ws, normal);
+        if (unshadowed <= 0.0) continue;
+        sum += face.radiance * (unshadowed * whole_visibility(p_ws, normal, i, footprint_m));
+    }
+    return sum;
+}

@@ -22,15 +22,7 @@ vec3 gathered_area_light(vec3 p_ws, vec3 normal) {
 }
 #else
 // The same, of each light by itself.
-vec3 gathered_area_light(vec3 p_ws, vec3 normal) {
-    vec3 sum = vec3(0.0);
-    for (int i = 0; i < u_area_lights.count; ++i) {
-        AreaLight face = seen_from(u_area_lights.faces[i], p_ws);
-        float unshadowed = face_irradiance(face, p_ws, normal);
-        if (unshadowed > 0.0) sum += face.radiance * (unshadowed * whole_visibility(p_ws, normal, i, 0.0));
-    }
-    return sum;
-}
+vec3 gathered_area_light(vec3 p_ws, vec3 normal) { return shadowed_irradiance(p_ws, normal, 0.0); }
 #endif
 
 // Irradiance / pi.

@@ -12,22 +12,6 @@
 #include "lib/cone_directions.glsl"
 #include "lib/diffuse_cone.glsl"
 
-// Cosine-weighted mean of the radiance that comes from the faces of area lights, each seen as a whole.
-// What lies within AREA_GAP_VOXELS of a face's plane shares voxels with it, and is taken for the face.
-const float AREA_GAP_VOXELS = 1.5;
-
-vec3 area_light_radiance(vec3 p_ws, vec3 normal, float spacing) {
-    vec3 sum = vec3(0.0);
-    for (int i = 0; i < u_area_lights.count; ++i) {
-        if (height_over_light(u_area_lights.faces[i], p_ws) < AREA_GAP_VOXELS * spacing) continue;
-        AreaLight face = seen_from(u_area_lights.faces[i], p_ws);
-        float unshadowed = face_irradiance(face, p_ws, normal);
-        if (unshadowed <= 0.0) continue;
-        sum += face.radiance * (unshadowed * whole_visibility(p_ws, normal, i, spacing));
-    }
-    return sum * INVERSE_PI;
-}
-
 // 1: a voxel traces two of each group's four cones, its neighbours along each axis the other two, and what
 // filters them takes the mean. One each would stand as a pattern in mirrors, which see single voxels.
 #ifndef SHARED
@@ -62,7 +46,8 @@ vec3 gathered_radiance(vec3 p_ws, vec3 mean_normal, float spacing, uint octant) 
         weights += weight;
     }
     float mean_cosine = mix(1.0, agreement, normal_certainty(agreement * agreement));
-    return sum / max(weights, 1e-6) + mean_cosine * area_light_radiance(p_ws, normal, spacing);
+    vec3 from_lamps = shadowed_irradiance(p_ws, normal, spacing) * INVERSE_PI;
+    return sum / max(weights, 1e-6) + mean_cosine * from_lamps;
 }
 #else
 vec3 gathered_radiance(vec3 p_ws, vec3 mean_normal, float spacing, uint octant) { return vec3(0.0); }

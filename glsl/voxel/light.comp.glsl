@@ -31,10 +31,9 @@ const float MEAN_COSINE = 0.25;
 // the mean over the voxel, not the value at its lattice point.
 const float NEAREST_LIGHT_VOXELS = 0.5;
 
-vec3 direct_irradiance(vec3 p_ws, vec3 mean_normal, float spacing) {
-    float squared = dot(mean_normal, mean_normal);
-    vec3 normal = mean_normal * inversesqrt(max(squared, 1e-6));
-    float certainty = normal_certainty(squared);
+// normal: the mean one, normalized.
+vec3 direct_irradiance(vec3 p_ws, vec3 mean_normal, vec3 normal, float spacing) {
+    float certainty = normal_certainty(dot(mean_normal, mean_normal));
     vec3 sum = vec3(0.0);
     for (LightWalk walk = first_light(p_ws); walk.light < light_count(); next_light(walk)) {
         LightSample light = sample_light(lights[walk.light], p_ws, spacing);
@@ -68,7 +67,7 @@ void main() {
     // Leaves of coarser regions know no height: their surfaces lie within half of their voxels.
     float height = level == u_octree.leaf_level ? surface_height_voxels(voxel.normal >> HEIGHT_SHIFT) : 0.5;
     vec3 p_ws = point_ws + normal * (height * spacing);
-    vec3 incident = direct_irradiance(p_ws, mean_normal, spacing) * INVERSE_PI;
+    vec3 incident = direct_irradiance(p_ws, mean_normal, normal, spacing) * INVERSE_PI;
 #if SPREAD
     // Bricks that got other slots hold nothing yet to gather.
     if (octree_state.fresh == 0u)

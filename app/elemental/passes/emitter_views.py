@@ -33,7 +33,7 @@ MOST_TEXELS = 512
 BALL_MARGIN = 1.001
 """Of the distance of a ball's farthest vertex: what is within is the ball itself."""
 FAR_BEHIND_M = 1e30
-"""Below a light's plane: all that is behind it.."""
+"""Below a light's plane: all that is behind it."""
 
 CUBE = (
     ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0)),
